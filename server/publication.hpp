@@ -1,0 +1,72 @@
+// The values that the mapping side hands to the network side. Each is complete in itself and may be dropped in
+// favour of a newer one.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera/stereo_frame.hpp"
+#include "mapping/tile_update.hpp"
+#include "mapping/view.hpp"
+
+namespace flogmap {
+
+/// One frame's tracking in the world.
+struct TrackingReport {
+  std::int64_t timestamp_ns = 0;
+  std::optional<SE3> world_from_camera;  // nothing while initialising or lost
+  Tracking tracking;
+  bool mapped = false;    // a view of this pose goes into the map
+  double latency_ms = 0;  // from capture to the end of tracking
+};
+
+struct TrajectoryEntry {
+  std::int64_t timestamp_ns = 0;
+  SE3 world_from_camera = SE3::Identity();
+  TrackingState state = TrackingState::ok;
+  bool mapped = false;
+};
+
+/// The newest rectified pair and its disparity; shared because several sessions may want it encoded.
+struct PictureReport {
+  std::int64_t timestamp_ns = 0;
+  std::shared_ptr<const RectifiedFrame> frame;
+  std::shared_ptr<const DisparityImage> disparity;
+};
+
+struct StageReport {
+  std::string stage;  // read, rectify, disparity, odometry, map
+  double median_ms = 0;
+  double p95_ms = 0;
+};
+
+/// How the mapping does; published about twice a second.
+struct StatusReport {
+  double frames_per_s = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t tracked = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t mapped_views = 0;
+  std::uint64_t loops = 0;
+  std::uint64_t dropped_frames = 0;  // live: the queue was full
+  std::uint64_t skipped_frames = 0;  // could not be read
+  std::vector<StageReport> stages;
+  std::vector<std::string> warnings;  // in words, with what to do
+  std::string alignment;              // given, gravity, ground, none
+};
+
+/// A map begins: fresh, reset, or continued from a store.
+struct MapBegin {
+  std::string epoch;  // 16 hex digits
+  MapInfo info;
+  StereoCamera camera;
+  std::string reason;  // in words, for viewers: "started", "reset by operator", "seek"
+  std::uint64_t revision = 0;
+  std::vector<TileUpdate> tiles;             // of a continued map
+  std::vector<TrajectoryEntry> trajectory;  // of a continued map
+};
+
+}  // namespace flogmap
