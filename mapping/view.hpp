@@ -58,4 +58,12 @@ struct Tracking {
   [[nodiscard]] bool has_pose() const { return state == TrackingState::ok || state == TrackingState::weak; }
 };
 
+/// One pose of the path, in the world.
+struct TrajectoryEntry {
+  std::int64_t timestamp_ns = 0;
+  SE3 world_from_camera = SE3::Identity();  // rectified left camera
+  TrackingState state = TrackingState::ok;
+  bool mapped = false;  // a view of this pose went into the map
+};
+
 }  // namespace flogmap

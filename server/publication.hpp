@@ -23,13 +23,6 @@ struct TrackingReport {
   double latency_ms = 0;  // from capture to the end of tracking
 };
 
-struct TrajectoryEntry {
-  std::int64_t timestamp_ns = 0;
-  SE3 world_from_camera = SE3::Identity();
-  TrackingState state = TrackingState::ok;
-  bool mapped = false;
-};
-
 /// The newest rectified pair and its disparity; shared because several sessions may want it encoded.
 struct PictureReport {
   std::int64_t timestamp_ns = 0;
