@@ -1,0 +1,181 @@
+#include "server/capture_control.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace flogmap {
+namespace {
+constexpr double kNsPerSecond = 1e9;
+// Further behind than this, the replay starts counting anew instead of racing to catch up.
+constexpr std::chrono::milliseconds kMaxLag{500};
+}  // namespace
+
+CaptureControl::CaptureControl(const SourceInfo& source, double rate, bool loop)
+    : source_(source), loop_(loop), rate_(rate), position_ns_(source.first_timestamp_ns) {}
+
+SessionState CaptureControl::state() const {
+  const std::scoped_lock lock(mutex_);
+  return state_;
+}
+
+std::string CaptureControl::reason() const {
+  const std::scoped_lock lock(mutex_);
+  return reason_;
+}
+
+PlaybackState CaptureControl::playback() const {
+  const std::scoped_lock lock(mutex_);
+  if (source_.live || source_.endless || !source_.num_frames) return {};
+  PlaybackState playback;
+  playback.seekable = true;
+  playback.position_s = static_cast<double>(position_ns_ - source_.first_timestamp_ns) / kNsPerSecond;
+  playback.duration_s =
+      static_cast<double>(source_.last_timestamp_ns - source_.first_timestamp_ns) / kNsPerSecond;
+  playback.rate = rate_;
+  playback.paused = state_ == SessionState::paused;
+  playback.loop = loop_;
+  return playback;
+}
+
+ControlResult CaptureControl::pause() {
+  const std::scoped_lock lock(mutex_);
+  if (state_ == SessionState::paused) return illegal("already paused");
+  if (state_ != SessionState::running) return illegal("only a running session can be paused");
+  state_ = SessionState::paused;
+  changed_.notify_all();
+  return {};
+}
+
+ControlResult CaptureControl::resume() {
+  const std::scoped_lock lock(mutex_);
+  if (state_ != SessionState::paused) return illegal("only a paused session can be resumed");
+  state_ = SessionState::running;
+  steps_ = 0;
+  anchor_.reset();
+  changed_.notify_all();
+  return {};
+}
+
+ControlResult CaptureControl::reset() {
+  const std::scoped_lock lock(mutex_);
+  if (state_ != SessionState::running && state_ != SessionState::paused && state_ != SessionState::finished) {
+    return illegal("there is no running session to reset");
+  }
+  reset_ = true;
+  changed_.notify_all();
+  return {};
+}
+
+ControlResult CaptureControl::change_playback(const PlaybackChange& change) {
+  if (source_.live) return illegal("a live source cannot be replayed");
+  if (change.position_s && (source_.endless || !source_.num_frames)) {
+    return illegal("this source cannot seek");
+  }
+  const std::scoped_lock lock(mutex_);
+  if (state_ != SessionState::running && state_ != SessionState::paused && state_ != SessionState::finished) {
+    return illegal("there is no replay to change");
+  }
+  if (state_ == SessionState::finished && !change.position_s && change.paused) {
+    return illegal("the recording has ended; set position_s to play it again");
+  }
+  if (change.rate) rate_ = *change.rate;
+  if (change.position_s) seek_s_ = change.position_s;
+  if (change.paused) state_ = *change.paused ? SessionState::paused : SessionState::running;
+  anchor_.reset();
+  changed_.notify_all();
+  return {};
+}
+
+ControlResult CaptureControl::step() {
+  if (source_.live) return illegal("a live source cannot be stepped");
+  const std::scoped_lock lock(mutex_);
+  if (state_ != SessionState::paused) return illegal("only a paused session can be stepped");
+  ++steps_;
+  changed_.notify_all();
+  return {};
+}
+
+bool CaptureControl::has_work() const {
+  return stop_ || reset_ || seek_s_ || state_ == SessionState::running || steps_ > 0;
+}
+
+CaptureTurn CaptureControl::await_turn() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return has_work(); });
+  if (stop_) return {.kind = CaptureTurn::Kind::stop};
+  if (reset_ || seek_s_) {
+    anchor_.reset();
+    hurry_until_ns_ = 0;
+    if (state_ == SessionState::finished) state_ = SessionState::running;
+    if (reset_) {
+      reset_ = false;
+      seek_s_.reset();
+      return {.kind = CaptureTurn::Kind::reset};
+    }
+    const double position_s = *std::exchange(seek_s_, std::nullopt);
+    if (state_ == SessionState::paused) ++steps_;  // show the frame that was sought
+    return {.kind = CaptureTurn::Kind::seek, .position_s = position_s};
+  }
+  if (state_ == SessionState::paused) --steps_;
+  return {};
+}
+
+CaptureControl::Clock::time_point CaptureControl::due(std::int64_t timestamp_ns) {
+  const auto now = Clock::now();
+  if (rate_ <= 0 || timestamp_ns < hurry_until_ns_ || state_ != SessionState::running) {
+    anchor_.reset();
+    return now;
+  }
+  if (anchor_) {
+    const double wait_s = static_cast<double>(timestamp_ns - anchor_ns_) / kNsPerSecond / rate_;
+    const auto at = *anchor_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
+    if (at > now - kMaxLag) return at;
+  }
+  anchor_ = now;
+  anchor_ns_ = timestamp_ns;
+  return now;
+}
+
+void CaptureControl::await_due(std::int64_t timestamp_ns) {
+  std::unique_lock lock(mutex_);
+  if (source_.live) return;
+  const auto at = due(timestamp_ns);
+  changed_.wait_until(lock, at, [&] { return stop_ || reset_ || seek_s_ || !anchor_; });
+}
+
+void CaptureControl::frame_delivered(std::int64_t timestamp_ns) {
+  const std::scoped_lock lock(mutex_);
+  position_ns_ = timestamp_ns;
+}
+
+void CaptureControl::hurry_until(std::int64_t timestamp_ns) {
+  const std::scoped_lock lock(mutex_);
+  hurry_until_ns_ = timestamp_ns;
+}
+
+void CaptureControl::finished() {
+  const std::scoped_lock lock(mutex_);
+  if (state_ == SessionState::running || state_ == SessionState::paused) state_ = SessionState::finished;
+  steps_ = 0;
+}
+
+void CaptureControl::started() {
+  const std::scoped_lock lock(mutex_);
+  if (state_ == SessionState::starting) state_ = SessionState::running;
+}
+
+void CaptureControl::failed(const std::string& reason) {
+  const std::scoped_lock lock(mutex_);
+  if (state_ == SessionState::draining) return;
+  state_ = SessionState::failed;
+  reason_ = reason;
+}
+
+void CaptureControl::drain() {
+  const std::scoped_lock lock(mutex_);
+  stop_ = true;
+  state_ = SessionState::draining;
+  changed_.notify_all();
+}
+
+}  // namespace flogmap

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "camera/stereo_source.hpp"
+#include "server/session_control.hpp"
+
+namespace flogmap {
+
+/// What the capture thread does next.
+struct CaptureTurn {
+  enum class Kind : std::uint8_t { read, seek, reset, stop };
+  Kind kind = Kind::read;
+  double position_s = 0;  // of a seek
+};
+
+/// The one-slot mailbox between whoever steers (network side, any thread) and the capture thread, and the state
+/// machine that both see.
+class CaptureControl final : public SessionControl {
+ public:
+  /// `rate`: 1 as recorded, 0 as fast as possible. Live sources ignore it.
+  CaptureControl(const SourceInfo& source, double rate, bool loop);
+
+  // SessionControl, any thread
+  [[nodiscard]] SessionState state() const override;
+  [[nodiscard]] std::string reason() const override;
+  [[nodiscard]] bool live() const override { return source_.live; }
+  [[nodiscard]] std::string source() const override { return source_.spec; }
+  [[nodiscard]] PlaybackState playback() const override;
+  ControlResult pause() override;
+  ControlResult resume() override;
+  ControlResult reset() override;
+  ControlResult change_playback(const PlaybackChange& change) override;
+  ControlResult step() override;
+
+  // capture thread
+  /// Blocks while paused or finished; then says what to do.
+  CaptureTurn await_turn();
+  /// Waits until the frame is due; cut short by a command, a pause or the end.
+  void await_due(std::int64_t timestamp_ns);
+  void frame_delivered(std::int64_t timestamp_ns);
+  void finished();
+  /// Frames before this time are not paced: a seek forwards plays fast instead of leaving a gap in the map.
+  void hurry_until(std::int64_t timestamp_ns);
+  [[nodiscard]] bool loop() const { return loop_; }
+
+  // the pipeline
+  void started();
+  void failed(const std::string& reason);
+  void drain();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  [[nodiscard]] bool has_work() const;
+  [[nodiscard]] Clock::time_point due(std::int64_t timestamp_ns);
+  ControlResult illegal(const std::string& detail) const { return {ControlOutcome::illegal, detail}; }
+
+  const SourceInfo source_;
+  const bool loop_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  SessionState state_ = SessionState::starting;
+  std::string reason_;
+  bool stop_ = false;
+  bool reset_ = false;
+  std::optional<double> seek_s_;
+  int steps_ = 0;
+  double rate_;
+  std::int64_t position_ns_ = 0;
+  std::int64_t hurry_until_ns_ = 0;
+  std::optional<Clock::time_point> anchor_;  // this moment shows the frame of anchor_ns_
+  std::int64_t anchor_ns_ = 0;
+};
+
+}  // namespace flogmap

@@ -1,0 +1,260 @@
+#include "server/pipeline.hpp"
+
+#include <random>
+#include <utility>
+
+namespace flogmap {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::size_t kFrameQueue = 2;
+constexpr std::size_t kViewQueue = 4;
+constexpr std::chrono::milliseconds kStatusEvery{500};
+constexpr double kNsPerSecond = 1e9;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// A name for a map that no other has: 16 hex digits.
+std::string random_epoch() {
+  std::random_device random;
+  static constexpr const char* kDigits = "0123456789abcdef";
+  std::string epoch;
+  for (int i = 0; i < 16; ++i) epoch += kDigits[random() & 15U];
+  return epoch;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const PipelineOptions& options, std::unique_ptr<StereoSource> source, FrontEnd front_end,
+                   MapIntegrator integrator, PipelineObserver& observer)
+    : options_(options),
+      source_(std::move(source)),
+      front_end_(std::move(front_end)),
+      integrator_(std::move(integrator)),
+      observer_(observer),
+      control_(source_->info(), options.rate, options.loop),
+      statistics_(options.statistics_window),
+      frames_(kFrameQueue, source_->info().live ? WhenFull::drop_oldest : WhenFull::wait),
+      views_(kViewQueue, WhenFull::wait) {}
+
+Pipeline::~Pipeline() { stop(); }
+
+void Pipeline::start() {
+  threads_.emplace_back([this] { run_stage([this] { capture(); }); });
+  threads_.emplace_back([this] { run_stage([this] { see(); }); });
+  threads_.emplace_back([this] { run_stage([this] { map(); }); });
+}
+
+void Pipeline::stop() {
+  control_.drain();
+  source_->stop();
+}
+
+void Pipeline::wait() {
+  threads_.clear();  // joins
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+/// Runs one stage's loop. If it throws, everything before and behind it ends too.
+template <typename Stage>
+void Pipeline::run_stage(Stage stage) {
+  try {
+    stage();
+  } catch (const std::exception& error) {
+    control_.failed(error.what());
+    {
+      const std::scoped_lock lock(counters_mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+    stop();
+    frames_.close();
+    views_.close();
+  }
+}
+
+// ------------------------------------------------------------------------------------------------ capture thread
+
+void Pipeline::capture() {
+  const std::string epoch = options_.continued.epoch;
+  generation_ = {1, epoch.empty() ? random_epoch() : epoch, epoch.empty() ? "started" : "continued"};
+  frames_.push({generation_, std::nullopt, Clock::now()});
+  control_.started();
+  for (bool more = true; more;) {
+    const CaptureTurn turn = control_.await_turn();
+    switch (turn.kind) {
+      case CaptureTurn::Kind::stop: more = false; break;
+      case CaptureTurn::Kind::reset: restart("reset by operator", 0); break;
+      case CaptureTurn::Kind::seek: go_to(turn.position_s); break;
+      case CaptureTurn::Kind::read:
+        if (!read_frame()) {
+          at_end();
+          more = !options_.end_with_source;
+        }
+        break;
+    }
+  }
+  frames_.close();
+}
+
+bool Pipeline::read_frame() {
+  const auto start = Clock::now();
+  std::optional<StereoFrame> frame = source_->next();
+  {
+    const std::scoped_lock lock(counters_mutex_);
+    skipped_ = source_->skipped();
+  }
+  if (!frame) return false;
+  statistics_.add(Stage::read, ms_since(start));
+  const std::int64_t timestamp_ns = frame->timestamp_ns;
+  control_.await_due(timestamp_ns);
+  frames_.push({generation_, std::move(frame), Clock::now()});
+  control_.frame_delivered(timestamp_ns);
+  return true;
+}
+
+void Pipeline::at_end() {
+  if (control_.loop() && control_.state() != SessionState::draining) {
+    restart("the recording starts again", 0);
+  } else {
+    control_.finished();
+  }
+}
+
+/// Another map from this position of the recording; a live source goes on where it is.
+void Pipeline::restart(const std::string& reason, double position_s) {
+  const SourceInfo info = source_->info();
+  if (!info.live && !info.endless) {
+    source_->seek(info.first_timestamp_ns + static_cast<std::int64_t>(position_s * kNsPerSecond));
+  }
+  generation_ = {generation_.number + 1, random_epoch(), reason};
+  frames_.push({generation_, std::nullopt, Clock::now()});
+}
+
+/// Forwards, every frame in between is mapped, only faster, so that the map has no hole and the path no jump;
+/// backwards, a new map begins.
+void Pipeline::go_to(double position_s) {
+  const double now_s = control_.playback().position_s;
+  if (position_s < now_s || control_.state() == SessionState::finished) {
+    restart("the recording was wound back", position_s);
+  } else {
+    control_.hurry_until(source_->info().first_timestamp_ns +
+                         static_cast<std::int64_t>(position_s * kNsPerSecond));
+  }
+}
+
+// ------------------------------------------------------------------------------------------------- vision thread
+
+void Pipeline::see() {
+  while (std::optional<Captured> captured = frames_.pop()) {
+    if (captured->generation.number != seen_generation_) begin_generation(captured->generation);
+    if (!captured->frame) continue;
+    FrontEndResult result = front_end_.process(*captured->frame);
+    report(*captured, result);
+    for (View& view : result.views) views_.push({.view = std::move(view), .generation = {}, .begun = {}});
+    if (Clock::now() - status_at_ > kStatusEvery) report_status();
+  }
+  report_status();
+  views_.close();
+}
+
+/// The map thread begins the new map before this thread goes on, so that no pose of it comes too early and no
+/// tile of the old one too late.
+void Pipeline::begin_generation(const Generation& generation) {
+  const bool first = seen_generation_ == 0;
+  seen_generation_ = generation.number;
+  if (!first) front_end_.reset();
+  auto begun = std::make_shared<std::promise<void>>();
+  std::future<void> done = begun->get_future();
+  if (views_.push({.view = {}, .generation = generation, .begun = std::move(begun)})) done.get();
+}
+
+void Pipeline::report(const Captured& captured, FrontEndResult& result) {
+  statistics_.add(Stage::rectify, result.times.rectify_ms);
+  statistics_.add(Stage::disparity, result.times.disparity_ms);
+  statistics_.add(Stage::odometry, result.times.odometry_ms);
+  {
+    const std::scoped_lock lock(counters_mutex_);
+    ++counters_.frames;
+    counters_.tracked += result.tracking.has_pose() ? 1 : 0;
+    counters_.lost += result.tracking.state == TrackingState::lost ? 1 : 0;
+    counters_.mapped_views += result.views.size();
+    counters_.warnings.clear();
+    if (!result.tracking.reason.empty()) counters_.warnings.push_back(result.tracking.reason);
+  }
+  if (!result.path.empty()) observer_.path_grew(result.path);
+  const std::int64_t timestamp_ns = captured.frame->timestamp_ns;
+  TrackingReport tracked;
+  tracked.timestamp_ns = timestamp_ns;
+  tracked.world_from_camera = result.world_from_camera;
+  tracked.tracking = std::move(result.tracking);
+  tracked.mapped = !result.views.empty();
+  tracked.latency_ms = ms_since(captured.at);
+  observer_.frame_tracked(tracked);
+  observer_.pictures_taken({timestamp_ns, result.rectified, result.disparity});
+}
+
+void Pipeline::report_status() {
+  const auto now = Clock::now();
+  StatusReport report = status();
+  const double seconds = std::chrono::duration<double>(now - status_at_).count();
+  if (status_at_ != Clock::time_point{} && seconds > 0) {
+    report.frames_per_s = static_cast<double>(report.frames - frames_at_status_) / seconds;
+  }
+  status_at_ = now;
+  frames_at_status_ = report.frames;
+  report.alignment = front_end_.alignment();
+  observer_.status_changed(report);
+}
+
+StatusReport Pipeline::status() const {
+  StatusReport report;
+  SkippedFrames skipped;
+  {
+    const std::scoped_lock lock(counters_mutex_);
+    report = counters_;
+    skipped = skipped_;
+  }
+  report.skipped_frames = static_cast<std::uint64_t>(skipped.count);
+  report.dropped_frames = frames_.dropped();
+  if (skipped.count > 0) {
+    report.warnings.push_back(std::to_string(skipped.count) + " frames skipped; last: " + skipped.last_reason);
+  }
+  report.stages = statistics_.report();
+  return report;
+}
+
+// ---------------------------------------------------------------------------------------------------- map thread
+
+void Pipeline::map() {
+  while (std::optional<ForMap> item = views_.pop()) {
+    if (item->generation) {
+      begin_map(*item->generation);
+      item->begun->set_value();
+      continue;
+    }
+    const auto start = Clock::now();
+    const std::vector<TileUpdate> updates = integrator_.integrate(*item->view);
+    statistics_.add(Stage::map, ms_since(start));
+    if (!updates.empty()) observer_.map_changed(integrator_.revision(), updates);
+  }
+}
+
+void Pipeline::begin_map(const Generation& generation) {
+  MapBegin begin;
+  if (generation.number > 1) {
+    integrator_.reset();
+  } else {
+    begin.tiles = options_.continued.tiles;
+    begin.trajectory = options_.continued.trajectory;
+  }
+  begin.epoch = generation.epoch;
+  begin.info = integrator_.info();
+  begin.camera = front_end_.camera();  // never changes after construction
+  begin.reason = generation.reason;
+  begin.revision = integrator_.revision();
+  observer_.map_begins(begin);
+}
+
+}  // namespace flogmap

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "server/publication.hpp"
+
+namespace flogmap {
+
+enum class Stage : std::uint8_t { read, rectify, disparity, odometry, map };
+inline constexpr std::array<const char*, 5> kStageNames{"read", "rectify", "disparity", "odometry", "map"};
+
+/// How long the stages take: median and 95th percentile of the last `window` values of each. Written by the
+/// pipeline's threads, read by any.
+class StageStatistics {
+ public:
+  explicit StageStatistics(std::size_t window) : window_(window) {}
+  void add(Stage stage, double ms);
+  [[nodiscard]] std::vector<StageReport> report() const;
+
+ private:
+  struct Samples {
+    std::vector<float> ms;
+    std::size_t next = 0;
+  };
+  const std::size_t window_;
+  mutable std::mutex mutex_;
+  std::array<Samples, kStageNames.size()> samples_;
+};
+
+}  // namespace flogmap
