@@ -17,9 +17,12 @@ inline constexpr float kObstacleThreshold = 0.3F;  // on M: an obstacle from her
 /// Fuzzy conjunction of a and b in [0, 1].
 constexpr float fuzzy_and(Operators operators, float a, float b) {
   switch (operators) {
-    case Operators::minmax: return std::min(a, b);
-    case Operators::lukasiewicz: return std::max(0.0F, a + b - 1.0F);
-    case Operators::algebraic: break;
+    case Operators::minmax:
+      return std::min(a, b);
+    case Operators::lukasiewicz:
+      return std::max(0.0F, a + b - 1.0F);
+    case Operators::algebraic:
+      break;
   }
   return a * b;
 }
@@ -27,9 +30,12 @@ constexpr float fuzzy_and(Operators operators, float a, float b) {
 /// Fuzzy disjunction of a and b in [0, 1].
 constexpr float fuzzy_or(Operators operators, float a, float b) {
   switch (operators) {
-    case Operators::minmax: return std::max(a, b);
-    case Operators::lukasiewicz: return std::min(1.0F, a + b);
-    case Operators::algebraic: break;
+    case Operators::minmax:
+      return std::max(a, b);
+    case Operators::lukasiewicz:
+      return std::min(1.0F, a + b);
+    case Operators::algebraic:
+      break;
   }
   return a + b - a * b;
 }
@@ -42,7 +48,8 @@ constexpr float not_free_nor_unknown(Operators operators, float E, float O) {
   return fuzzy_not(fuzzy_or(operators, fuzzy_and(operators, E, fuzzy_not(O)), I));
 }
 
-/// Layer value M_k of the visual map, in [0, 1]; unknown and free are 0. Eq. (11). K stands outside the complement.
+/// Layer value M_k of the visual map, in [0, 1]; unknown and free are 0. Eq. (11). K stands outside the
+/// complement.
 constexpr float map_value(Operators operators, float E, float O, float K) {
   return fuzzy_and(operators, not_free_nor_unknown(operators, E, O), K);
 }
