@@ -1,0 +1,32 @@
+// What odometry keeps of one frame: corners with disparity, and what they look like.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "camera/stereo_camera.hpp"
+#include "camera/stereo_frame.hpp"
+#include "mapping/odometry/features.hpp"
+#include "mapping/odometry/stereo_pixel.hpp"
+#include "mapping/view.hpp"
+
+namespace flogmap {
+
+/// Corners of the left picture that have a disparity; all vectors have one entry per corner.
+struct FrameFeatures {
+  std::vector<Corner> corners;
+  std::vector<float> disparity_px;      // of the dense image, > 0
+  std::vector<Eigen::Vector3d> points;  // metres, camera frame
+  std::vector<Descriptor> upright;
+};
+
+[[nodiscard]] FrameFeatures extract_features(const StereoCamera& camera, const RectifiedFrame& frame,
+                                             const DisparityImage& disparity, const CornerOptions& options);
+
+/// The disparity at a corner to a fraction of a pixel: the patch around it is looked for in the right picture,
+/// from the dense disparity. Nothing if it is not found there within 1.5 px, or too near to the border.
+[[nodiscard]] std::optional<double> refine_disparity(const RectifiedFrame& frame, const Eigen::Vector2d& px,
+                                                     double disparity_px);
+
+}  // namespace flogmap

@@ -1,0 +1,67 @@
+#include "mapping/odometry/frame_matching.hpp"
+
+#include <algorithm>
+
+#include "mapping/odometry/motion_solver.hpp"
+#include "mapping/triangulate.hpp"
+
+namespace flogmap {
+namespace {
+
+/// Patches of the same size in metres, not in pixels: half and twice the distance still look alike.
+std::vector<float> scales_by_nearness(const FrameFeatures& features, float disparity_of_scale_1) {
+  std::vector<float> scales;
+  for (const float d : features.disparity_px) scales.push_back(std::clamp(d / disparity_of_scale_1, 0.4F, 4.0F));
+  return scales;
+}
+
+float median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::optional<FrameMatch> solve(const StereoCamera& camera, const FrameFeatures& key, const FrameFeatures& current,
+                                std::vector<IndexPair> pairs, int min_consistent,
+                                const ConsistencyOptions& consistency) {
+  std::vector<PointPair> points;
+  for (const IndexPair& pair : pairs) points.push_back({key.points[pair.key], current.points[pair.current]});
+  FrameMatch match;
+  match.consistent = largest_consistent_set(camera, points, consistency);
+  if (static_cast<int>(match.consistent.size()) < min_consistent) return std::nullopt;
+  std::vector<PointPair> chosen;
+  std::vector<double> weights;  // 1 / trace of the covariances
+  for (const int i : match.consistent) {
+    chosen.push_back(points[i]);
+    weights.push_back(1 / (point_covariance(camera, points[i].in_key).trace() +
+                           point_covariance(camera, points[i].in_current).trace()));
+  }
+  const auto motion = align_points(chosen, weights);
+  if (!motion) return std::nullopt;
+  match.current_from_key = *motion;
+  match.pairs = std::move(pairs);
+  return match;
+}
+
+}  // namespace
+
+std::optional<FrameMatch> match_frames(const StereoCamera& camera, const MatchableFrame& key,
+                                       const MatchableFrame& current, const MatchingOptions& matching,
+                                       const ConsistencyOptions& consistency) {
+  if (key.features.corners.empty() || current.features.corners.empty()) return std::nullopt;
+  auto upright = match_mutually(key.features.upright, current.features.upright, matching.max_difference);
+  auto match = solve(camera, key.features, current.features, std::move(upright), matching.min_consistent, consistency);
+  if (match) return match;
+  const float d = median(key.features.disparity_px);
+  const auto turned = [&](const MatchableFrame& frame) {
+    return describe(frame.left, frame.features.corners, PatchFrame::own_orientation,
+                    scales_by_nearness(frame.features, d));
+  };
+  ConsistencyOptions any_turn = consistency;
+  any_turn.max_turn_rad.reset();
+  return solve(camera, key.features, current.features,
+               match_mutually(turned(key), turned(current), matching.max_difference), matching.min_consistent,
+               any_turn);
+}
+
+}  // namespace flogmap

@@ -1,0 +1,37 @@
+// The motion between two frames from their corners alone: no prediction, no earlier pose. FLOG.md section 9.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "camera/stereo_camera.hpp"
+#include "mapping/odometry/consistency.hpp"
+#include "mapping/odometry/frame_features.hpp"
+#include "mapping/view.hpp"
+
+namespace flogmap {
+
+struct MatchingOptions {
+  double max_difference = 0.6;  // of two descriptors, standard deviations of a patch, mean over its samples
+  int min_consistent = 12;      // correspondences that must agree with one another
+};
+
+/// Two frames of which the left pictures are at hand as well.
+struct MatchableFrame {
+  const Image<std::uint8_t>& left;
+  const FrameFeatures& features;
+};
+
+struct FrameMatch {
+  SE3 current_from_key = SE3::Identity();  // closed form: good to a pixel or so
+  std::vector<IndexPair> pairs;
+  std::vector<int> consistent;  // indices of pairs
+};
+
+/// Upright patches and the rotation constraint first; where they fail, patches in their own orientation and
+/// enlarged by their nearness, under any rotation. Nothing if the consistent set is too small or on a line.
+[[nodiscard]] std::optional<FrameMatch> match_frames(const StereoCamera& camera, const MatchableFrame& key,
+                                                     const MatchableFrame& current, const MatchingOptions& matching,
+                                                     const ConsistencyOptions& consistency);
+
+}  // namespace flogmap

@@ -1,0 +1,60 @@
+#include "mapping/odometry/landmark.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "mapping/odometry/frame_features.hpp"
+
+namespace flogmap {
+namespace {
+
+constexpr double kLeastCorrelation = 0.75;
+constexpr double kCornerSigma_px = 0.05;  // the corner is where its patch says: only numerical noise
+
+/// How offsets in the current picture turn into offsets in the anchor's, for a small surface that faces the
+/// anchor.
+Eigen::Matrix2d anchor_from_current(const StereoCamera& camera, const Landmark& landmark,
+                                    const SE3& camera_from_anchor, const Eigen::Vector3d& p) {
+  const double metres_per_px = camera.baseline_m / landmark.anchor_pixel.z();
+  const Eigen::Matrix<double, 2, 3> J = project_jacobian(camera, p).topRows<2>();
+  const Eigen::Matrix2d current_from_anchor = metres_per_px * J * camera_from_anchor.linear().leftCols<2>();
+  return current_from_anchor.inverse();
+}
+
+bool plausible_warp(const Eigen::Matrix2d& warp) {
+  const double area = std::abs(warp.determinant());
+  return warp.allFinite() && area > 0.15 && area < 6;
+}
+
+}  // namespace
+
+Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame, const SE3& odometry_from_camera,
+                       const StereoPixel& pixel, std::int64_t id, double disparity_sigma_px) {
+  const Eigen::Matrix3d J = odometry_from_camera.linear() * triangulate_jacobian(camera, pixel);
+  const double xy = kCornerSigma_px * kCornerSigma_px;
+  const Eigen::Vector3d noise(xy, xy, disparity_sigma_px * disparity_sigma_px);
+  return {.id = id,
+          .patch = PatchSource(frame.left, pixel.head<2>()),
+          .odometry_from_anchor = odometry_from_camera,
+          .anchor_pixel = pixel,
+          .in_odometry = odometry_from_camera * triangulate(camera, pixel),
+          .covariance = J * noise.asDiagonal() * J.transpose()};
+}
+
+std::optional<Sighting> find_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
+                                      const Landmark& landmark, const SE3& camera_from_odometry,
+                                      double radius_px) {
+  const Eigen::Vector3d p = camera_from_odometry * landmark.in_odometry;
+  if (p.z() < 0.05) return std::nullopt;
+  const StereoPixel expected = project(camera, p);
+  const SE3 camera_from_anchor = camera_from_odometry * landmark.odometry_from_anchor;
+  const Eigen::Matrix2d warp = anchor_from_current(camera, landmark, camera_from_anchor, p);
+  if (!plausible_warp(warp)) return std::nullopt;
+  const auto left = PatchAligner(landmark.patch, warp).find(frame.left, expected.head<2>(), radius_px);
+  if (!left || left->correlation < kLeastCorrelation) return std::nullopt;
+  const auto disparity = refine_disparity(frame, left->px, expected.z());
+  if (!disparity) return std::nullopt;
+  return Sighting{landmark.id, {left->px.x(), left->px.y(), *disparity}};
+}
+
+}  // namespace flogmap

@@ -1,0 +1,94 @@
+#include "mapping/odometry/local_map.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace flogmap {
+namespace {
+
+constexpr int kSpacingPx = 12;  // between landmarks of one frame
+
+/// Remembers which parts of a picture are taken.
+class Spacing {
+ public:
+  Spacing(int width, int height)
+      : columns_(width / kSpacingPx + 1),
+        taken_(static_cast<std::size_t>(columns_) * (height / kSpacingPx + 1), false) {}
+
+  /// True once per part.
+  bool take(const Eigen::Vector2d& px) {
+    const int column = static_cast<int>(px.x()) / kSpacingPx, row = static_cast<int>(px.y()) / kSpacingPx;
+    auto cell = taken_[static_cast<std::size_t>(row) * columns_ + column];
+    if (cell) return false;
+    cell = true;
+    return true;
+  }
+
+ private:
+  int columns_;
+  std::vector<bool> taken_;
+};
+
+}  // namespace
+
+void LocalMap::add_key_frame(const RectifiedFrame& frame, FrameFeatures features, const SE3& odometry_from_camera,
+                             std::vector<Sighting> sightings) {
+  KeyFrame key_frame{.id = next_key_frame_++,
+                     .odometry_from_camera = odometry_from_camera,
+                     .left = frame.left,
+                     .features = std::move(features),
+                     .sightings = std::move(sightings)};
+  for (const Sighting& s : key_frame.sightings) landmarks_.at(s.landmark).last_key_frame = key_frame.id;
+  add_landmarks(frame, key_frame);
+  key_frames_.push_back(std::move(key_frame));
+  if (static_cast<int>(key_frames_.size()) > max_key_frames_) forget_oldest();
+}
+
+void LocalMap::add_landmarks(const RectifiedFrame& frame, KeyFrame& key_frame) {
+  Spacing spacing(frame.left.width, frame.left.height);
+  for (const Sighting& s : key_frame.sightings) spacing.take(s.pixel.head<2>());
+  const FrameFeatures& features = key_frame.features;
+  for (std::size_t i = 0; i < features.corners.size(); ++i) {
+    if (static_cast<int>(key_frame.sightings.size()) >= max_landmarks_) return;
+    const Eigen::Vector2d px = features.corners[i].px.cast<double>();
+    if (!spacing.take(px)) continue;
+    const auto d = refine_disparity(frame, px, features.disparity_px[i]);
+    if (!d) continue;
+    const StereoPixel pixel(px.x(), px.y(), *d);
+    Landmark landmark = make_landmark(camera_, frame, key_frame.odometry_from_camera, pixel, next_landmark_++,
+                                      disparity_sigma_px_);
+    landmark.last_key_frame = key_frame.id;
+    key_frame.sightings.push_back({landmark.id, pixel});
+    landmarks_.emplace(landmark.id, std::move(landmark));
+  }
+}
+
+void LocalMap::forget_oldest() {
+  key_frames_.pop_front();
+  const std::int64_t oldest = key_frames_.front().id;
+  std::erase_if(landmarks_, [oldest](const auto& entry) { return entry.second.last_key_frame < oldest; });
+}
+
+std::vector<Sighting> LocalMap::find(const RectifiedFrame& frame, const SE3& odometry_from_camera,
+                                     double radius_px) const {
+  std::vector<const Landmark*> newest_first;
+  for (const auto& [id, landmark] : landmarks_) newest_first.push_back(&landmark);
+  std::stable_sort(newest_first.begin(), newest_first.end(),
+                   [](const Landmark* a, const Landmark* b) { return a->last_key_frame > b->last_key_frame; });
+  const SE3 camera_from_odometry = odometry_from_camera.inverse();
+  Spacing spacing(frame.left.width, frame.left.height);
+  std::vector<Sighting> sightings;
+  for (const Landmark* landmark : newest_first) {
+    if (static_cast<int>(sightings.size()) >= max_landmarks_) break;
+    const auto sighting = find_landmark(camera_, frame, *landmark, camera_from_odometry, radius_px);
+    if (sighting && spacing.take(sighting->pixel.head<2>())) sightings.push_back(*sighting);
+  }
+  return sightings;
+}
+
+void LocalMap::clear() {
+  key_frames_.clear();
+  landmarks_.clear();
+}
+
+}  // namespace flogmap

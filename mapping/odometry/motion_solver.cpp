@@ -1,0 +1,194 @@
+#include "mapping/odometry/motion_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
+#include <cmath>
+
+namespace flogmap {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix3x6 = Eigen::Matrix<double, 3, 6>;
+
+constexpr double kNearestZ_m = 1e-3;
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/// One point's residual at a pose, weighed by all errors that it carries.
+struct Residual {
+  Eigen::Vector3d error;        // seen - predicted, (x, y, d) px
+  Eigen::Matrix3d information;  // inverse covariance
+  Matrix3x6 jacobian;           // of the prediction, by a left perturbation of the pose
+  double squared_sigmas = 0;    // error' information error
+};
+
+std::optional<Residual> residual_of(const StereoCamera& camera, const MotionPoint& point, const SE3& pose,
+                                    const MotionOptions& options) {
+  const Eigen::Vector3d p = pose * point.in_key;
+  if (p.z() < kNearestZ_m) return std::nullopt;
+  const Eigen::Matrix3d J_p = project_jacobian(camera, p);
+  const Eigen::Matrix3d J_key = J_p * pose.linear();
+  Eigen::Matrix3d S = J_key * point.covariance * J_key.transpose();
+  const double xy = options.image_sigma_px * options.image_sigma_px;
+  S.diagonal() += Eigen::Vector3d(xy, xy, options.disparity_sigma_px * options.disparity_sigma_px);
+  Residual r;
+  r.error = point.current - project(camera, p);
+  r.information = S.inverse();
+  r.jacobian << J_p, -J_p * cross_matrix(p);
+  r.squared_sigmas = r.error.dot(r.information * r.error);
+  return r;
+}
+
+/// Huber's weight: 1 up to k standard deviations, then falling as 1/distance.
+double robust_weight(double squared_sigmas, double k) {
+  return squared_sigmas <= k * k ? 1 : k / std::sqrt(squared_sigmas);
+}
+
+double robust_cost(double squared_sigmas, double k) {
+  return squared_sigmas <= k * k ? squared_sigmas : 2 * k * std::sqrt(squared_sigmas) - k * k;
+}
+
+/// Gauss-Newton's normal equations at one pose.
+struct NormalEquations {
+  Covariance6 H = Covariance6::Zero();
+  Vector6 b = Vector6::Zero();
+  double cost = 0;
+  int num_points = 0;
+};
+
+class Problem {
+ public:
+  Problem(const StereoCamera& camera, const std::vector<MotionPoint>& points, const MotionOptions& options)
+      : camera_(camera), points_(points), options_(options), used_(points.size(), true) {}
+
+  [[nodiscard]] NormalEquations linearise(const SE3& pose) const {
+    NormalEquations n;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!used_[i]) continue;
+      const auto r = residual_of(camera_, points_[i], pose, options_);
+      if (!r) {
+        n.cost += 1e6;  // behind the camera: as bad as can be
+        continue;
+      }
+      const double weight = robust_weight(r->squared_sigmas, options_.robust_sigmas);
+      const Eigen::Matrix<double, 6, 3> JtW = weight * r->jacobian.transpose() * r->information;
+      n.H += JtW * r->jacobian;
+      n.b += JtW * r->error;
+      n.cost += robust_cost(r->squared_sigmas, options_.robust_sigmas);
+      ++n.num_points;
+    }
+    return n;
+  }
+
+  /// Levenberg-Marquardt; the pose it ends at.
+  [[nodiscard]] SE3 solve(SE3 pose) const {
+    NormalEquations n = linearise(pose);
+    double damping = 1e-4;
+    for (int i = 0; i < options_.max_iterations; ++i) {
+      Covariance6 H = n.H;
+      H.diagonal() *= 1 + damping;
+      const Vector6 step = H.ldlt().solve(n.b);
+      if (!step.allFinite()) break;
+      const SE3 moved = small_motion(step) * pose;
+      const NormalEquations at_moved = linearise(moved);
+      if (at_moved.cost > n.cost) {
+        damping *= 10;
+        continue;
+      }
+      pose = moved;
+      n = at_moved;
+      damping /= 10;
+      if (step.norm() < 1e-7) break;
+    }
+    return pose;
+  }
+
+  /// Uses only the points that fit a pose from now on; returns how many they are.
+  int keep_inliers(const SE3& pose) {
+    const double limit = options_.inlier_sigmas * options_.inlier_sigmas;
+    int count = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const auto r = residual_of(camera_, points_[i], pose, options_);
+      used_[i] = r && r->squared_sigmas <= limit;
+      count += used_[i] ? 1 : 0;
+    }
+    return count;
+  }
+
+  [[nodiscard]] const std::vector<bool>& used() const { return used_; }
+
+ private:
+  const StereoCamera& camera_;
+  const std::vector<MotionPoint>& points_;
+  const MotionOptions& options_;
+  std::vector<bool> used_;
+};
+
+/// Inverse of the information, enlarged if the residuals are larger than promised. Nothing if it is singular.
+std::optional<Covariance6> covariance_of(const NormalEquations& n) {
+  const Eigen::LDLT<Covariance6> ldlt(n.H);
+  if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < 1e-6) return std::nullopt;
+  const double freedom = std::max(3.0 * n.num_points - 6, 1.0);
+  return Covariance6(ldlt.solve(Covariance6::Identity()) * std::max(1.0, n.cost / freedom));
+}
+
+}  // namespace
+
+SE3 small_motion(const Vector6& x) {
+  SE3 motion = SE3::Identity();
+  const Eigen::Vector3d turn = x.tail<3>();
+  const double angle = turn.norm();
+  if (angle > 1e-12) motion.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  motion.translation() = x.head<3>();
+  return motion;
+}
+
+std::optional<SE3> align_points(const std::vector<PointPair>& pairs, const std::vector<double>& weights) {
+  if (pairs.size() < 3) return std::nullopt;
+  Eigen::Vector3d key_mean = Eigen::Vector3d::Zero(), current_mean = Eigen::Vector3d::Zero();
+  double sum = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    key_mean += weights[i] * pairs[i].in_key;
+    current_mean += weights[i] * pairs[i].in_current;
+    sum += weights[i];
+  }
+  key_mean /= sum;
+  current_mean /= sum;
+  Eigen::Matrix3d W = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    W += weights[i] / sum * (pairs[i].in_current - current_mean) * (pairs[i].in_key - key_mean).transpose();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(W, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector3d spread = svd.singularValues();
+  if (!(spread(1) > 1e-6 * spread(0))) return std::nullopt;  // on a line: the turn about it is free
+  const double handedness = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  SE3 current_from_key = SE3::Identity();
+  current_from_key.linear() =
+      svd.matrixU() * Eigen::Vector3d(1, 1, handedness).asDiagonal() * svd.matrixV().transpose();
+  current_from_key.translation() = current_mean - current_from_key.linear() * key_mean;
+  return current_from_key;
+}
+
+std::optional<Motion> refine_motion(const StereoCamera& camera, const std::vector<MotionPoint>& points,
+                                    const SE3& start, const MotionOptions& options) {
+  if (points.size() < 3) return std::nullopt;
+  Problem problem(camera, points, options);
+  Motion motion;
+  motion.current_from_key = problem.solve(start);
+  for (int pass = 0; pass < 2; ++pass) {  // outliers bend the first solution, and with it who is one
+    if (problem.keep_inliers(motion.current_from_key) < 3) return std::nullopt;
+    motion.current_from_key = problem.solve(motion.current_from_key);
+  }
+  motion.num_inliers = problem.keep_inliers(motion.current_from_key);
+  motion.inlier = problem.used();
+  const auto covariance = covariance_of(problem.linearise(motion.current_from_key));
+  if (!covariance) return std::nullopt;
+  motion.covariance = *covariance;
+  return motion;
+}
+
+}  // namespace flogmap

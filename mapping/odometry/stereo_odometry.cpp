@@ -1,0 +1,201 @@
+#include "mapping/odometry/stereo_odometry.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "mapping/odometry/local_map.hpp"
+
+namespace flogmap {
+namespace {
+
+void require(bool fine, const std::string& what) {
+  if (!fine) throw std::runtime_error("odometry: " + what);
+}
+
+void check(const OdometryOptions& options, const StereoCamera& camera) {
+  require(camera.focal_px > 0, "focal_px must be > 0, got " + std::to_string(camera.focal_px));
+  require(camera.baseline_m > 0, "baseline_m must be > 0, got " + std::to_string(camera.baseline_m));
+  require(options.min_inliers >= 4, "min_inliers must be >= 4, got " + std::to_string(options.min_inliers));
+  require(options.max_key_frames >= 1, "max_key_frames must be >= 1, got " + std::to_string(options.max_key_frames));
+  require(options.key_frame_overlap > 0 && options.key_frame_overlap < 1,
+          "key_frame_overlap must lie between 0 and 1, got " + std::to_string(options.key_frame_overlap));
+}
+
+std::string counted(const std::string& what, int count, int needed) {
+  return what + " (" + std::to_string(count) + " of " + std::to_string(needed) + " needed)";
+}
+
+/// What is known of the current frame before it has a pose.
+struct Current {
+  const RectifiedFrame& frame;
+  FrameFeatures features;
+};
+
+/// The pose of the current frame and the landmarks that support it.
+struct Placed {
+  Motion motion;  // its "key" frame is the odometry frame
+  std::vector<Sighting> sightings;
+
+  [[nodiscard]] SE3 odometry_from_camera() const { return motion.current_from_key.inverse(); }
+};
+
+}  // namespace
+
+class StereoOdometry::Tracker {
+ public:
+  Tracker(const OdometryOptions& options, const StereoCamera& camera)
+      : options_(options),
+        camera_(camera),
+        map_(camera, options.max_key_frames, options.max_landmarks, options.motion.disparity_sigma_px) {}
+
+  Tracking track(const RectifiedFrame& frame, const DisparityImage& disparity) {
+    Current current{frame, extract_features(camera_, frame, disparity, options_.corners)};
+    Tracking tracking;
+    for (const Corner& corner : current.features.corners) tracking.corners_px.push_back(corner.px);
+    if (static_cast<int>(current.features.corners.size()) < options_.min_corners) {
+      return without_pose(std::move(tracking), too_few_corners(current));
+    }
+    if (map_.key_frames().empty()) return start(std::move(tracking), current, "");
+    const auto placed = place(current);
+    if (placed) return with_pose(std::move(tracking), current, *placed);
+    if (++num_lost_ <= options_.max_lost_frames) return without_pose(std::move(tracking), reason_);
+    return start_segment(std::move(tracking), current);
+  }
+
+  void reset() {
+    map_.clear();
+    pose_ = SE3::Identity();
+    num_lost_ = 0;
+  }
+
+ private:
+  [[nodiscard]] std::string too_few_corners(const Current& current) const {
+    return counted("too few corners", static_cast<int>(current.features.corners.size()), options_.min_corners);
+  }
+
+  Tracking without_pose(Tracking tracking, std::string reason) const {
+    tracking.state = map_.key_frames().empty() ? TrackingState::initialising : TrackingState::lost;
+    tracking.reason = std::move(reason);
+    return tracking;
+  }
+
+  /// Makes the current frame a key frame at the last known pose.
+  Tracking start(Tracking tracking, Current& current, std::string reason) {
+    tracking.state = reason.empty() ? TrackingState::ok : TrackingState::weak;
+    tracking.reason = std::move(reason);
+    tracking.odometry_from_camera = pose_;
+    tracking.new_key_frame = true;
+    map_.add_key_frame(current.frame, std::move(current.features), pose_, {});
+    num_lost_ = 0;
+    return tracking;
+  }
+
+  Tracking start_segment(Tracking tracking, Current& current) {
+    map_.clear();
+    return start(std::move(tracking), current,
+                 "not found again (" + reason_ + "): goes on from the last known pose");
+  }
+
+  /// Against the newest key frame, then against the older ones.
+  std::optional<Placed> place(const Current& current) {
+    const auto& key_frames = map_.key_frames();
+    for (auto key = key_frames.rbegin(); key != key_frames.rend(); ++key) {
+      if (auto placed = place_against(*key, current)) return placed;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Placed> place_against(const KeyFrame& key, const Current& current) {
+    const auto match = match_frames(camera_, key.matchable(), {current.frame.left, current.features},
+                                    options_.matching, options_.consistency);
+    if (!match) {
+      reason_ = "too few corners agree on a motion";
+      return std::nullopt;
+    }
+    return refine(current, key.odometry_from_camera * match->current_from_key.inverse());
+  }
+
+  std::optional<Placed> refine(const Current& current, const SE3& odometry_from_camera) {
+    Placed placed;
+    placed.sightings = map_.find(current.frame, odometry_from_camera, options_.search_radius_px);
+    std::vector<MotionPoint> points;
+    for (const Sighting& s : placed.sightings) {
+      const Landmark& landmark = map_.landmark(s.landmark);
+      points.push_back({landmark.in_odometry, landmark.covariance, s.pixel});
+    }
+    const auto motion = refine_motion(camera_, points, odometry_from_camera.inverse(), options_.motion);
+    const int num_inliers = motion ? motion->num_inliers : 0;
+    if (num_inliers < options_.min_inliers) {
+      reason_ = counted("too few landmarks found again", num_inliers, options_.min_inliers);
+      return std::nullopt;
+    }
+    placed.motion = *motion;
+    return placed;
+  }
+
+  Tracking with_pose(Tracking tracking, Current& current, const Placed& placed) {
+    num_lost_ = 0;
+    pose_ = placed.odometry_from_camera();
+    const int num_inliers = placed.motion.num_inliers;
+    tracking.state = num_inliers < options_.weak_inliers ? TrackingState::weak : TrackingState::ok;
+    if (tracking.state == TrackingState::weak) {
+      tracking.reason = counted("few landmarks found again", num_inliers, options_.weak_inliers);
+    }
+    tracking.odometry_from_camera = pose_;
+    tracking.covariance = placed.motion.covariance;
+    tracking.matches = matches_of(placed);
+    tracking.new_key_frame = num_inliers < options_.key_frame_overlap *
+                                               static_cast<double>(map_.key_frames().back().sightings.size());
+    if (tracking.new_key_frame) {
+      map_.add_key_frame(current.frame, std::move(current.features), pose_, inliers_of(placed));
+    }
+    return tracking;
+  }
+
+  /// The landmarks that the newest key frame sees, too.
+  [[nodiscard]] std::vector<Match> matches_of(const Placed& placed) const {
+    std::map<std::int64_t, Eigen::Vector2f> key_px;
+    for (const Sighting& s : map_.key_frames().back().sightings) key_px[s.landmark] = s.pixel.head<2>().cast<float>();
+    std::vector<Match> matches;
+    for (std::size_t i = 0; i < placed.sightings.size(); ++i) {
+      const Sighting& s = placed.sightings[i];
+      const auto key = key_px.find(s.landmark);
+      if (key == key_px.end()) continue;
+      matches.push_back({key->second, s.pixel.head<2>().cast<float>(), static_cast<float>(s.pixel.z()),
+                         placed.motion.inlier[i]});
+    }
+    return matches;
+  }
+
+  [[nodiscard]] static std::vector<Sighting> inliers_of(const Placed& placed) {
+    std::vector<Sighting> inliers;
+    for (std::size_t i = 0; i < placed.sightings.size(); ++i) {
+      if (placed.motion.inlier[i]) inliers.push_back(placed.sightings[i]);
+    }
+    return inliers;
+  }
+
+  OdometryOptions options_;
+  StereoCamera camera_;
+  LocalMap map_;
+  SE3 pose_ = SE3::Identity();  // the last known
+  int num_lost_ = 0;            // frames with corners but no pose, in a row
+  std::string reason_;          // why the last attempt failed
+};
+
+StereoOdometry::StereoOdometry(const OdometryOptions& options, const StereoCamera& camera) {
+  check(options, camera);
+  tracker_ = std::make_unique<Tracker>(options, camera);
+}
+
+StereoOdometry::~StereoOdometry() = default;
+StereoOdometry::StereoOdometry(StereoOdometry&&) noexcept = default;
+StereoOdometry& StereoOdometry::operator=(StereoOdometry&&) noexcept = default;
+
+Tracking StereoOdometry::track(const RectifiedFrame& frame, const DisparityImage& disparity) {
+  return tracker_->track(frame, disparity);
+}
+
+void StereoOdometry::reset() { tracker_->reset(); }
+
+}  // namespace flogmap
