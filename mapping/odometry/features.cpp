@@ -3,43 +3,73 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
-#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace flogmap {
 namespace {
 
-constexpr int kStrengthRadiusPx = 3;
+constexpr int kRadiusPx = 4;  // of the window over which gradients are gathered
+constexpr int kSidePx = 2 * kRadiusPx + 1;
+constexpr int kBlockPx = 6;  // at most one corner in a block of this side
 
-/// Smaller eigenvalue of the mean gradient products over 7 x 7 pixels (Shi & Tomasi 1994).
-float corner_strength(const Image<std::uint8_t>& image, int x, int y) {
-  int xx = 0, xy = 0, yy = 0;
-  for (int v = y - kStrengthRadiusPx; v <= y + kStrengthRadiusPx; ++v) {
-    const std::uint8_t *above = image.row(v - 1), *here = image.row(v), *below = image.row(v + 1);
-    for (int u = x - kStrengthRadiusPx; u <= x + kStrengthRadiusPx; ++u) {
-      const int gx = here[u + 1] - here[u - 1];
-      const int gy = below[u] - above[u];
-      xx += gx * gx;
-      xy += gx * gy;
-      yy += gy * gy;
+Image<std::uint8_t> blurred(const Image<std::uint8_t>& image) {
+  Image<std::uint8_t> smooth(image.width, image.height);
+  const cv::Mat from(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
+  cv::Mat to(image.height, image.width, CV_8U, smooth.pixels.data());
+  cv::blur(from, to, cv::Size(3, 3));
+  return smooth;
+}
+
+/// Products of the gradients along one row, for every column.
+struct GradientProducts {
+  std::vector<std::int32_t> xx, xy, yy;
+
+  explicit GradientProducts(int width) : xx(width, 0), xy(width, 0), yy(width, 0) {}
+
+  /// Adds (sign 1) or takes away (sign -1) the products of row y.
+  void add_row(const Image<std::uint8_t>& image, int y, std::int32_t sign) {
+    const std::uint8_t *above = image.row(y - 1), *here = image.row(y), *below = image.row(y + 1);
+    for (int x = 1; x < image.width - 1; ++x) {
+      const std::int32_t gx = here[x + 1] - here[x - 1];
+      const std::int32_t gy = below[x] - above[x];
+      xx[x] += sign * gx * gx;
+      xy[x] += sign * gx * gy;
+      yy[x] += sign * gy * gy;
     }
   }
-  constexpr float kSide = 2 * kStrengthRadiusPx + 1;
-  const float scale = 1 / (4 * kSide * kSide);  // central differences are twice the gradient
-  const auto a = static_cast<float>(xx), b = static_cast<float>(xy), c = static_cast<float>(yy);
-  return scale * 0.5F * (a + c - std::sqrt((a - c) * (a - c) + 4 * b * b));
+};
+
+/// Sums over kSidePx neighbours, for columns [kRadiusPx, width - kRadiusPx).
+void box_sum(const std::vector<std::int32_t>& values, std::vector<float>& sums) {
+  std::int32_t sum = 0;
+  for (int x = 0; x < kSidePx - 1; ++x) sum += values[x];
+  for (int x = kRadiusPx; x + kRadiusPx < static_cast<int>(values.size()); ++x) {
+    sum += values[x + kRadiusPx];
+    sums[x] = static_cast<float>(sum);
+    sum -= values[x - kRadiusPx];
+  }
 }
 
-/// Where the parabola through three values has its top, in (-0.5, 0.5); 0 if it has none.
-float parabola_top(float before, float here, float after) {
-  const float bend = before - 2 * here + after;
-  if (bend >= 0) return 0;
-  return std::clamp(0.5F * (before - after) / bend, -0.5F, 0.5F);
-}
-
-Corner refine(const Image<std::uint8_t>& image, int x, int y, float strength) {
-  const float dx = parabola_top(corner_strength(image, x - 1, y), strength, corner_strength(image, x + 1, y));
-  const float dy = parabola_top(corner_strength(image, x, y - 1), strength, corner_strength(image, x, y + 1));
-  return {{static_cast<float>(x) + dx, static_cast<float>(y) + dy}, strength};
+/// Smaller eigenvalue of the mean gradient products around every pixel (Shi & Tomasi 1994); 0 at the border.
+Image<float> strength_map(const Image<std::uint8_t>& image) {
+  Image<float> strength(image.width, image.height, 0.0F);
+  GradientProducts columns(image.width);
+  std::vector<float> xx(image.width, 0.0F), xy(image.width, 0.0F), yy(image.width, 0.0F);
+  constexpr float kScale = 0.5F / (4 * kSidePx * kSidePx);  // central differences are twice the gradient
+  for (int y = 1; y < kSidePx; ++y) columns.add_row(image, y, 1);
+  for (int y = kRadiusPx + 1; y + kRadiusPx + 1 < image.height; ++y) {
+    columns.add_row(image, y + kRadiusPx, 1);
+    box_sum(columns.xx, xx);
+    box_sum(columns.xy, xy);
+    box_sum(columns.yy, yy);
+    float* out = strength.row(y);
+    for (int x = 0; x < image.width; ++x) {
+      const float difference = xx[x] - yy[x];
+      out[x] = kScale * (xx[x] + yy[x] - std::sqrt(difference * difference + 4 * xy[x] * xy[x]));
+    }
+    columns.add_row(image, y - kRadiusPx, -1);
+  }
+  return strength;
 }
 
 struct Candidate {
@@ -48,19 +78,35 @@ struct Candidate {
   int rank_in_cell = 0;
 };
 
-std::vector<Candidate> fast_corners(const Image<std::uint8_t>& image, int threshold, float min_strength) {
-  const cv::Mat mat(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
-  std::vector<cv::KeyPoint> points;
-  cv::FAST(mat, points, threshold, true);
+Candidate strongest_in_block(const Image<float>& strength, int left, int top, int right, int bottom) {
+  Candidate best{left, top, strength.at(left, top)};
+  for (int y = top; y < bottom; ++y) {
+    const float* row = strength.row(y);
+    for (int x = left; x < right; ++x) {
+      if (row[x] > best.strength) best = {x, y, row[x]};
+    }
+  }
+  return best;
+}
+
+bool is_summit(const Image<float>& strength, const Candidate& c) {
+  for (int y = c.y - 1; y <= c.y + 1; ++y) {
+    for (int x = c.x - 1; x <= c.x + 1; ++x) {
+      if (strength.at(x, y) > c.strength) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<Candidate> summits(const Image<float>& strength, float least) {
   std::vector<Candidate> candidates;
-  candidates.reserve(points.size());
-  for (const cv::KeyPoint& point : points) {
-    const int x = static_cast<int>(point.pt.x), y = static_cast<int>(point.pt.y);
-    const bool inside = x >= kCornerBorderPx && y >= kCornerBorderPx && x < image.width - kCornerBorderPx &&
-                        y < image.height - kCornerBorderPx;
-    if (!inside) continue;
-    const float strength = corner_strength(image, x, y);
-    if (strength >= min_strength) candidates.push_back({x, y, strength});
+  const int right = strength.width - kCornerBorderPx, bottom = strength.height - kCornerBorderPx;
+  for (int y = kCornerBorderPx; y < bottom; y += kBlockPx) {
+    for (int x = kCornerBorderPx; x < right; x += kBlockPx) {
+      const Candidate c =
+          strongest_in_block(strength, x, y, std::min(x + kBlockPx, right), std::min(y + kBlockPx, bottom));
+      if (c.strength >= least && is_summit(strength, c)) candidates.push_back(c);
+    }
   }
   return candidates;
 }
@@ -81,19 +127,30 @@ void sort_by_cell(std::vector<Candidate>& candidates, int width, int height, int
                    [](const Candidate& a, const Candidate& b) { return a.rank_in_cell < b.rank_in_cell; });
 }
 
+/// Where the parabola through three values has its top, in [-0.5, 0.5]; 0 if it has none.
+float parabola_top(float before, float here, float after) {
+  const float bend = before - 2 * here + after;
+  if (bend >= 0) return 0;
+  return std::clamp(0.5F * (before - after) / bend, -0.5F, 0.5F);
+}
+
+Corner refine(const Image<float>& strength, const Candidate& c) {
+  const float dx = parabola_top(strength.at(c.x - 1, c.y), c.strength, strength.at(c.x + 1, c.y));
+  const float dy = parabola_top(strength.at(c.x, c.y - 1), c.strength, strength.at(c.x, c.y + 1));
+  return {{static_cast<float>(c.x) + dx, static_cast<float>(c.y) + dy}, c.strength};
+}
+
 }  // namespace
 
 std::vector<Corner> detect_corners(const Image<std::uint8_t>& image, const CornerOptions& options) {
   if (std::min(image.width, image.height) <= 2 * kCornerBorderPx) return {};
-  auto candidates = fast_corners(image, options.fast_threshold, options.min_strength);
-  if (static_cast<int>(candidates.size()) < options.max_corners) {
-    candidates = fast_corners(image, std::max(options.fast_threshold / 2, 1), options.min_strength);
-  }
+  const Image<float> strength = strength_map(blurred(image));
+  auto candidates = summits(strength, options.min_strength);
   sort_by_cell(candidates, image.width, image.height, options.cell_px);
   std::vector<Corner> corners;
   for (const Candidate& c : candidates) {
     if (static_cast<int>(corners.size()) >= options.max_corners || c.rank_in_cell >= options.max_per_cell) break;
-    corners.push_back(refine(image, c.x, c.y, c.strength));
+    corners.push_back(refine(strength, c));
   }
   return corners;
 }

@@ -14,8 +14,7 @@ struct CornerOptions {
   int max_corners = 500;
   int cell_px = 40;                // corners are picked cell by cell, so that they cover the picture
   int max_per_cell = 6;
-  int fast_threshold = 12;         // grey levels; halved once in a dull picture
-  float min_strength = 30;         // smaller eigenvalue of the mean gradient products, grey levels^2 per px^2
+  float min_strength = 1;          // smaller eigenvalue of the mean gradient products, grey levels^2 per px^2
 };
 
 /// A corner of the left picture, to a fraction of a pixel.
