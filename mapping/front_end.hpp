@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/calibration/stereo_calibration.hpp"
+#include "camera/rectifier.hpp"
 #include "camera/stereo_frame.hpp"
 #include "mapping/flog/view_selector.hpp"
 #include "mapping/given_poses.hpp"
@@ -40,7 +40,6 @@ struct FrontEndResult {
   std::vector<TrajectoryEntry> path;     // poses known since the last frame: usually one; all of the first
                                          // seconds at once when the start is decided
   std::vector<View> views;               // likewise, of those that moved or turned enough
-  bool no_pose_given = false;            // mapping with given poses: there is none for this frame
   StageTimes times;
 };
 
@@ -48,9 +47,10 @@ struct FrontEndResult {
 /// give the same results.
 class FrontEnd {
  public:
-  /// `poses`: map with these instead of odometry. `up_in_raw_left`: against gravity, if a sensor says so.
-  FrontEnd(const FrontEndOptions& options, const StereoCalibration& calibration,
-           std::optional<GivenPoses> poses, std::optional<Eigen::Vector3d> up_in_raw_left);
+  /// `poses`: map with these instead of odometry. `up_in_camera`: unit vector against gravity in the rectified
+  /// left camera of the first frame, if a sensor says so.
+  FrontEnd(const FrontEndOptions& options, Rectifier rectifier, std::optional<GivenPoses> poses,
+           std::optional<Eigen::Vector3d> up_in_camera);
   ~FrontEnd();
   FrontEnd(FrontEnd&&) noexcept;
   FrontEnd& operator=(FrontEnd&&) noexcept;

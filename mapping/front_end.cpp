@@ -1,0 +1,152 @@
+#include "mapping/front_end.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "mapping/stereo/segment_filter.hpp"
+
+namespace flogmap {
+namespace {
+
+/// Time since the last lap, milliseconds.
+class LapTimer {
+ public:
+  double lap_ms() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+struct FrontEnd::Parts {
+  /// A tracked frame of the first seconds, before it is known which way is up.
+  struct Waiting {
+    TrajectoryEntry entry;  // its pose still in the odometry's own frame
+    std::optional<View> view;
+  };
+
+  Parts(const FrontEndOptions& given_options, Rectifier given_rectifier, std::optional<GivenPoses> given_poses,
+        std::optional<Eigen::Vector3d> up)
+      : options(given_options),
+        rectifier(std::move(given_rectifier)),
+        matcher(make_matcher(options.stereo, rectifier.camera())),
+        odometry(options.odometry, rectifier.camera()),
+        selector(options.views, rectifier.camera()),
+        poses(std::move(given_poses)),
+        up_in_camera(std::move(up)) {
+    start_anew();
+  }
+
+  void start_anew() {
+    odometry.reset();
+    selector.reset();
+    waiting.clear();
+    level_start.emplace(options.start, rectifier.camera(), up_in_camera);
+    world_from_odometry.reset();
+    if (poses) world_from_odometry = SE3::Identity();
+    if (options.first_world_from_camera) world_from_odometry = options.first_world_from_camera;
+  }
+
+  Tracking track(const FrontEndResult& result);
+  void place(FrontEndResult& result);
+
+  FrontEndOptions options;
+  Rectifier rectifier;
+  std::unique_ptr<DisparityMatcher> matcher;
+  StereoOdometry odometry;
+  ViewSelector selector;
+  std::optional<GivenPoses> poses;
+  std::optional<Eigen::Vector3d> up_in_camera;
+  std::optional<LevelStart> level_start;
+  std::optional<SE3> world_from_odometry;
+  std::vector<Waiting> waiting;
+};
+
+FrontEnd::FrontEnd(const FrontEndOptions& options, Rectifier rectifier, std::optional<GivenPoses> poses,
+                   std::optional<Eigen::Vector3d> up_in_camera)
+    : parts_(std::make_unique<Parts>(options, std::move(rectifier), std::move(poses), std::move(up_in_camera))) {}
+FrontEnd::~FrontEnd() = default;
+FrontEnd::FrontEnd(FrontEnd&&) noexcept = default;
+FrontEnd& FrontEnd::operator=(FrontEnd&&) noexcept = default;
+
+FrontEndResult FrontEnd::process(const StereoFrame& frame) {
+  Parts& p = *parts_;
+  FrontEndResult result;
+  LapTimer timer;
+  result.rectified = std::make_shared<RectifiedFrame>(p.rectifier.rectify(frame));
+  result.times.rectify_ms = timer.lap_ms();
+  DisparityImage disparity = p.matcher->match(*result.rectified);
+  remove_small_segments(disparity, min_segment_px(p.options.stereo, p.rectifier.camera()));
+  result.disparity = std::make_shared<DisparityImage>(std::move(disparity));
+  result.times.disparity_ms = timer.lap_ms();
+  result.tracking = p.track(result);
+  if (result.tracking.has_pose()) p.place(result);
+  result.times.odometry_ms = timer.lap_ms();
+  return result;
+}
+
+/// Where the camera is in the odometry's own frame: estimated, or looked up.
+Tracking FrontEnd::Parts::track(const FrontEndResult& result) {
+  if (!poses) return odometry.track(*result.rectified, *result.disparity);
+  Tracking tracking;
+  const std::optional<SE3> pose = poses->at(result.rectified->timestamp_ns);
+  tracking.state = pose ? TrackingState::ok : TrackingState::lost;
+  if (pose) tracking.odometry_from_camera = *pose;
+  if (!pose) tracking.reason = "no pose is given within 5 ms of this frame";
+  return tracking;
+}
+
+/// Puts the frame into the world, as a place of the path and, if it shows something new, as a view. Until it is
+/// decided which way is up, frames wait.
+void FrontEnd::Parts::place(FrontEndResult& result) {
+  const Tracking& tracking = result.tracking;
+  const std::int64_t timestamp_ns = result.rectified->timestamp_ns;
+  // A weak pose is shown but not mapped.
+  const bool mapped = tracking.state == TrackingState::ok && selector.accept(tracking.odometry_from_camera);
+  Waiting frame{{timestamp_ns, tracking.odometry_from_camera, tracking.state, mapped}, std::nullopt};
+  if (mapped) {
+    frame.view = View{timestamp_ns, tracking.odometry_from_camera, *result.disparity, result.rectified->left};
+  }
+  waiting.push_back(std::move(frame));
+  if (!world_from_odometry) world_from_odometry = level_start->add(*result.disparity, tracking.odometry_from_camera);
+  if (!world_from_odometry) return;
+
+  result.world_from_camera = *world_from_odometry * tracking.odometry_from_camera;
+  for (Waiting& known : waiting) {
+    known.entry.world_from_camera = *world_from_odometry * known.entry.world_from_camera;
+    result.path.push_back(known.entry);
+    if (!known.view) continue;
+    known.view->world_from_camera = *world_from_odometry * known.view->world_from_camera;
+    result.views.push_back(std::move(*known.view));
+  }
+  waiting.clear();
+}
+
+void FrontEnd::reset() { parts_->start_anew(); }
+
+void FrontEnd::continue_from(const SE3& world_from_camera) {
+  parts_->start_anew();
+  parts_->world_from_odometry = world_from_camera;
+}
+
+const StereoCamera& FrontEnd::camera() const { return parts_->rectifier.camera(); }
+
+double FrontEnd::max_disparity_px() const {
+  const StereoOptions& stereo = parts_->options.stereo;
+  const int count = stereo.num_disparities > 0
+                        ? stereo.num_disparities
+                        : auto_num_disparities(camera(), stereo.nearest_m, stereo.min_disparity);
+  return stereo.min_disparity + count - 1;
+}
+
+std::string FrontEnd::alignment() const {
+  const Parts& p = *parts_;
+  if (p.poses || p.options.first_world_from_camera) return "given";
+  return p.world_from_odometry ? p.level_start->decided_by() : "undecided";
+}
+
+}  // namespace flogmap
