@@ -19,7 +19,7 @@ struct FlogOptions {
   double full_confidence_rays = 0;  // N_K of every layer; 0 = derived from camera and cells
   int min_rays = 8;                 // a cell is "seen" from this N on
   int num_threads = 0;              // 0 = one per processor; the map does not depend on it
-  IntegratorKind integrator = IntegratorKind::ray;
+  IntegratorKind integrator = IntegratorKind::fan;
 };
 
 /// Throws std::invalid_argument naming field, value and what is allowed.

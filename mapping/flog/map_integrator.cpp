@@ -6,6 +6,7 @@
 
 #include "mapping/flog/full_confidence.hpp"
 #include "mapping/flog/ray_integrator.hpp"
+#include "mapping/flog/threads.hpp"
 
 namespace flogmap {
 namespace {
@@ -54,11 +55,12 @@ bool same_cells(const std::shared_ptr<const Tile>& a, const std::shared_ptr<cons
 }  // namespace
 
 MapIntegrator::MapIntegrator(const FlogOptions& options, const StereoCamera& camera, double max_disparity_px)
-    : options_(options), model_(ray_model(options, camera)), evidence_(options.grid.num_layers()) {
+    : options_(options), model_(ray_model(options, camera)), fan_(model_, options.grid) {
   check(options);
   check(camera, max_disparity_px);
   map_.info = map_info(options, camera, max_disparity_px);
   derive_mergers();
+  evidence_.resize(threads_for(options.num_threads), ViewEvidence(options.grid.num_layers()));
 }
 
 void MapIntegrator::derive_mergers() {
@@ -77,20 +79,35 @@ std::vector<TileUpdate> MapIntegrator::integrate(const View& view) {
 void MapIntegrator::gather(const View& view) {
   const Eigen::Vector3d T = view.world_from_camera.translation();
   const double reach = reach_m(model_) + options_.grid.cell_size_m;
-  evidence_.start(cell_at(options_.grid, T.x() - reach, T.y() - reach),
-                  cell_at(options_.grid, T.x() + reach, T.y() + reach));
-  integrate_ray_by_ray(model_, options_.grid, view, evidence_);
+  for (ViewEvidence& evidence : evidence_) {
+    evidence.start(cell_at(options_.grid, T.x() - reach, T.y() - reach),
+                   cell_at(options_.grid, T.x() + reach, T.y() + reach));
+  }
+  if (options_.integrator == IntegratorKind::fan) {
+    fan_.integrate(view, evidence_);
+  } else {
+    integrate_ray_by_ray(model_, options_.grid, view, evidence_.front());
+  }
 }
 
 std::vector<TileUpdate> MapIntegrator::merge() {
-  std::vector<TileIndex> touched = evidence_.touched();
-  std::sort(touched.begin(), touched.end());
-  std::vector<TileUpdate> updates;
-  for (const TileIndex index : touched) {
-    updates.push_back({index, map_.revision + 1, merged(index, map_.revision + 1)});
-    map_.tiles[index] = updates.back().tile;
+  std::vector<TileIndex> touched;
+  for (const ViewEvidence& evidence : evidence_) {
+    touched.insert(touched.end(), evidence.touched().begin(), evidence.touched().end());
   }
-  if (!updates.empty()) ++map_.revision;
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  const std::uint64_t revision = map_.revision + 1;
+  std::vector<TileUpdate> updates;
+  for (const TileIndex index : touched) updates.push_back({index, revision, nullptr});
+  const int num_threads = static_cast<int>(evidence_.size());
+  run_on_threads(num_threads, [&](int thread) {
+    for (std::size_t i = thread; i < updates.size(); i += num_threads) {
+      updates[i].tile = merged(updates[i].index, revision);
+    }
+  });
+  for (const TileUpdate& update : updates) map_.tiles[update.index] = update.tile;
+  if (!updates.empty()) map_.revision = revision;
   return updates;
 }
 
@@ -98,12 +115,17 @@ std::shared_ptr<const Tile> MapIntegrator::merged(TileIndex index, std::uint64_t
   const auto old = map_.tiles.find(index);
   auto tile = old == map_.tiles.end() ? unseen_tile(options_.grid) : std::make_shared<Tile>(*old->second);
   tile->revision = revision;
+  std::vector<const EvidenceSum*> parts;
+  for (const ViewEvidence& evidence : evidence_) {
+    if (const EvidenceSum* part = evidence.tile(index)) parts.push_back(part);
+  }
   const int num_layers = options_.grid.num_layers();
-  const EvidenceSum* sum = evidence_.tile(index);
-  for (int column = 0; column < kTileColumns; ++column) {
-    for (int k = 0; k < num_layers; ++k, ++sum) {
-      if (sum->rays_and_empty == 0) continue;
-      mergers_[k].merge(tile->cells[std::size_t(k) * kTileColumns + column], sum->evidence());
+  for (int column = 0, i = 0; column < kTileColumns; ++column) {
+    for (int k = 0; k < num_layers; ++k, ++i) {
+      EvidenceSum sum;
+      for (const EvidenceSum* part : parts) sum += part[i];
+      if (sum.rays_and_empty == 0) continue;
+      mergers_[k].merge(tile->cells[std::size_t(k) * kTileColumns + column], sum.evidence());
     }
   }
   return tile;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mapping/flog/cell_fuse.hpp"
+#include "mapping/flog/fan_integrator.hpp"
 #include "mapping/flog/flog_options.hpp"
 #include "mapping/flog/ray_model.hpp"
 #include "mapping/flog/view_evidence.hpp"
@@ -48,7 +49,8 @@ class MapIntegrator {
   FlogOptions options_;
   RayModel model_;
   std::vector<CellMerger> mergers_;  // one per layer
-  ViewEvidence evidence_;
+  FanIntegrator fan_;
+  std::vector<ViewEvidence> evidence_;  // one per thread
   MapSnapshot map_;
 };
 

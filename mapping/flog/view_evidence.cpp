@@ -15,10 +15,10 @@ void ViewEvidence::start(CellIndex low, CellIndex high) {
 
 std::vector<EvidenceSum>* ViewEvidence::touch(TileIndex index) {
   const std::size_t used = touched_.size();
-  if (used == pool_.size()) pool_.push_back(std::make_unique<std::vector<EvidenceSum>>());
-  pool_[used]->assign(std::size_t(kTileColumns) * std::size_t(num_layers_), EvidenceSum{});
+  if (used == pool_.size()) pool_.emplace_back();
+  pool_[used].assign(std::size_t(kTileColumns) * std::size_t(num_layers_), EvidenceSum{});
   touched_.push_back(index);
-  return pool_[used].get();
+  return &pool_[used];
 }
 
 }  // namespace flogmap

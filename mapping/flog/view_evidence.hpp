@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <deque>
 #include <vector>
 
 #include "mapping/flog/cell_fuse.hpp"
@@ -22,6 +22,11 @@ struct EvidenceSum {
   void add(std::uint64_t rays, std::uint64_t empty, std::uint64_t occupied_sum) {
     rays_and_empty += (rays << 40U) + empty;
     occupied += occupied_sum;
+  }
+  EvidenceSum& operator+=(const EvidenceSum& other) {
+    rays_and_empty += other.rays_and_empty;
+    occupied += other.occupied;
+    return *this;
   }
   [[nodiscard]] CellEvidence evidence() const {
     constexpr double kUnit = 1.0 / kEvidenceOne;
@@ -74,7 +79,7 @@ class ViewEvidence {
   int height_ = 0;
   std::vector<std::vector<EvidenceSum>*> blocks_;  // of the window; null where untouched
   std::vector<TileIndex> touched_;
-  std::vector<std::unique_ptr<std::vector<EvidenceSum>>> pool_;  // the first touched_.size() are in use
+  std::deque<std::vector<EvidenceSum>> pool_;  // the first touched_.size() are in use
 };
 
 }  // namespace flogmap

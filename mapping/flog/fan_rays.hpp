@@ -1,0 +1,41 @@
+// The rays of a view, seen from above and sorted by azimuth. FLOG.md section 7, point 1.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mapping/flog/azimuth_bins.hpp"
+#include "mapping/flog/ray_model.hpp"
+#include "mapping/view.hpp"
+
+namespace flogmap {
+
+/// A ray as a line over the ground: everything is measured in rho, the horizontal distance from the camera;
+/// metres.
+struct FanRay {
+  float hit_m = 0;         // rho of the hit
+  float width_m = 0;       // m seen from above, > 0
+  float run_per_rise = 0;  // change of rho per metre of height, signed, never 0
+  float end_m = 0;         // the ray touches [0, end_m)
+};
+
+/// All rays of a view in one array, bin after bin. The memory is kept from view to view.
+class FanRays {
+ public:
+  /// Sorts the rays of a view on num_threads threads.
+  void sort(const RayModel& model, const View& view, int num_threads);
+
+  [[nodiscard]] const AzimuthBins& bins() const { return bins_; }
+  [[nodiscard]] const FanRay* begin(int bin) const { return rays_.data() + begin_[bin]; }
+  [[nodiscard]] const FanRay* end(int bin) const { return rays_.data() + begin_[bin + 1]; }
+  [[nodiscard]] std::uint32_t size() const { return begin_.back(); }
+
+ private:
+  AzimuthBins bins_;
+  std::vector<std::uint32_t> begin_;  // where each bin starts; one more than there are bins
+  std::vector<std::vector<std::uint32_t>>
+      place_;  // per thread and bin: a count, then where the next ray goes
+  std::vector<FanRay> rays_;
+};
+
+}  // namespace flogmap
