@@ -32,6 +32,7 @@ class Agreement {
       : t_(camera.baseline_m),
         k_squared_(std::pow(options.image_sigma_px / (camera.focal_px * camera.baseline_m), 2)),
         num_sigmas_squared_(options.num_sigmas * options.num_sigmas),
+        cos_max_turn_(std::cos(options.max_turn_rad.value_or(0))),
         options_(options) {}
 
   /// True if a rigid motion can take both points from the key frame to the current one.
@@ -53,14 +54,17 @@ class Agreement {
   /// The direction of u turned less than theta_max, give or take what the points' errors can turn it.
   bool turned_little(double dot, double L2_u, double L2_v, double bound) const {
     if (!options_.max_turn_rad) return true;
+    const double length_product = std::sqrt(L2_u * L2_v);
+    if (dot >= cos_max_turn_ * length_product) return true;
     const double slack = std::sqrt(bound / std::min(L2_u, L2_v));
     const double limit = *options_.max_turn_rad + slack;
-    return limit >= EIGEN_PI || dot >= std::cos(limit) * std::sqrt(L2_u * L2_v);
+    return limit >= EIGEN_PI || dot >= std::cos(limit) * length_product;
   }
 
   double t_;
   double k_squared_;
   double num_sigmas_squared_;
+  double cos_max_turn_;
   ConsistencyOptions options_;
 };
 

@@ -50,7 +50,7 @@ std::optional<double> refine_disparity(const RectifiedFrame& frame, const Eigen:
   const bool inside = px.x() >= margin && px.y() >= margin && px.x() < frame.left.width - margin &&
                       px.y() < frame.left.height - margin;
   if (!inside) return std::nullopt;
-  const PatchAligner aligner(PatchSource(frame.left, px), Eigen::Matrix2d::Identity());
+  const PatchAligner aligner(frame.left, px);
   const auto found = aligner.find_in_row(frame.right, px - Eigen::Vector2d(disparity_px, 0), 1.5);
   if (!found || found->correlation < kLeastCorrelation) return std::nullopt;
   const double d = px.x() - found->px.x();

@@ -46,22 +46,23 @@ std::optional<FrameMatch> solve(const StereoCamera& camera, const FrameFeatures&
 }  // namespace
 
 std::optional<FrameMatch> match_frames(const StereoCamera& camera, const MatchableFrame& key,
-                                       const MatchableFrame& current, const MatchingOptions& matching,
-                                       const ConsistencyOptions& consistency) {
-  if (key.features.corners.empty() || current.features.corners.empty()) return std::nullopt;
-  auto upright = match_mutually(key.features.upright, current.features.upright, matching.max_difference);
-  auto match = solve(camera, key.features, current.features, std::move(upright), matching.min_consistent, consistency);
-  if (match) return match;
-  const float d = median(key.features.disparity_px);
-  const auto turned = [&](const MatchableFrame& frame) {
+                                       const MatchableFrame& current, PatchFrame patches,
+                                       const MatchingOptions& matching, const ConsistencyOptions& consistency) {
+  const FrameFeatures &from = key.features, &to = current.features;
+  if (from.corners.empty() || to.corners.empty()) return std::nullopt;
+  if (patches == PatchFrame::upright) {
+    return solve(camera, from, to, match_mutually(from.upright, to.upright, matching.max_difference),
+                 matching.min_consistent, consistency);
+  }
+  const float d = median(from.disparity_px);
+  const auto turned = [d](const MatchableFrame& frame) {
     return describe(frame.left, frame.features.corners, PatchFrame::own_orientation,
                     scales_by_nearness(frame.features, d));
   };
   ConsistencyOptions any_turn = consistency;
   any_turn.max_turn_rad.reset();
-  return solve(camera, key.features, current.features,
-               match_mutually(turned(key), turned(current), matching.max_difference), matching.min_consistent,
-               any_turn);
+  return solve(camera, from, to, match_mutually(turned(key), turned(current), matching.max_difference),
+               matching.min_consistent, any_turn);
 }
 
 }  // namespace flogmap

@@ -28,10 +28,11 @@ struct FrameMatch {
   std::vector<int> consistent;  // indices of pairs
 };
 
-/// Upright patches and the rotation constraint first; where they fail, patches in their own orientation and
+/// Matches patches either upright, under the rotation constraint of `consistency`, or in their own orientation and
 /// enlarged by their nearness, under any rotation. Nothing if the consistent set is too small or on a line.
 [[nodiscard]] std::optional<FrameMatch> match_frames(const StereoCamera& camera, const MatchableFrame& key,
-                                                     const MatchableFrame& current, const MatchingOptions& matching,
+                                                     const MatchableFrame& current, PatchFrame patches,
+                                                     const MatchingOptions& matching,
                                                      const ConsistencyOptions& consistency);
 
 }  // namespace flogmap

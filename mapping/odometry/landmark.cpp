@@ -9,6 +9,7 @@ namespace flogmap {
 namespace {
 
 constexpr double kLeastCorrelation = 0.75;
+constexpr double kNearestZ_m = 0.05;
 constexpr double kCornerSigma_px = 0.05;  // the corner is where its patch says: only numerical noise
 
 /// How offsets in the current picture turn into offsets in the anchor's, for a small surface that faces the
@@ -41,18 +42,29 @@ Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame, 
           .covariance = J * noise.asDiagonal() * J.transpose()};
 }
 
+std::optional<StereoPixel> expected_pixel(const StereoCamera& camera, const Landmark& landmark,
+                                          const SE3& camera_from_odometry) {
+  const Eigen::Vector3d p = camera_from_odometry * landmark.in_odometry;
+  if (p.z() < kNearestZ_m) return std::nullopt;
+  const StereoPixel s = project(camera, p);
+  constexpr double kMargin = PatchSource::kMargin;
+  const bool inside = s.x() - s.z() >= kMargin && s.x() < camera.width_px - kMargin && s.y() >= kMargin &&
+                      s.y() < camera.height_px - kMargin;
+  return inside ? std::optional(s) : std::nullopt;
+}
+
 std::optional<Sighting> find_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
                                       const Landmark& landmark, const SE3& camera_from_odometry,
                                       double radius_px) {
+  const auto expected = expected_pixel(camera, landmark, camera_from_odometry);
+  if (!expected) return std::nullopt;
   const Eigen::Vector3d p = camera_from_odometry * landmark.in_odometry;
-  if (p.z() < 0.05) return std::nullopt;
-  const StereoPixel expected = project(camera, p);
   const SE3 camera_from_anchor = camera_from_odometry * landmark.odometry_from_anchor;
   const Eigen::Matrix2d warp = anchor_from_current(camera, landmark, camera_from_anchor, p);
   if (!plausible_warp(warp)) return std::nullopt;
-  const auto left = PatchAligner(landmark.patch, warp).find(frame.left, expected.head<2>(), radius_px);
+  const auto left = PatchAligner(landmark.patch, warp).find(frame.left, expected->head<2>(), radius_px);
   if (!left || left->correlation < kLeastCorrelation) return std::nullopt;
-  const auto disparity = refine_disparity(frame, left->px, expected.z());
+  const auto disparity = refine_disparity(frame, left->px, expected->z());
   if (!disparity) return std::nullopt;
   return Sighting{landmark.id, {left->px.x(), left->px.y(), *disparity}};
 }

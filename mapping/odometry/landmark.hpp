@@ -34,6 +34,10 @@ struct Sighting {
                                      const SE3& odometry_from_camera, const StereoPixel& pixel, std::int64_t id,
                                      double disparity_sigma_px);
 
+/// Where a pose puts a landmark; nothing unless it is before the camera and well inside both pictures.
+[[nodiscard]] std::optional<StereoPixel> expected_pixel(const StereoCamera& camera, const Landmark& landmark,
+                                                        const SE3& camera_from_odometry);
+
 /// Looks for a landmark where a pose puts it, within `radius_px`: its patch, warped as the pose says, in the
 /// left picture, and what is found there in the right one. Nothing if it is out of the picture, hidden, or does
 /// not look like itself.

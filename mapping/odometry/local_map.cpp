@@ -15,16 +15,15 @@ class Spacing {
       : columns_(width / kSpacingPx + 1),
         taken_(static_cast<std::size_t>(columns_) * (height / kSpacingPx + 1), false) {}
 
-  /// True once per part.
-  bool take(const Eigen::Vector2d& px) {
-    const int column = static_cast<int>(px.x()) / kSpacingPx, row = static_cast<int>(px.y()) / kSpacingPx;
-    auto cell = taken_[static_cast<std::size_t>(row) * columns_ + column];
-    if (cell) return false;
-    cell = true;
-    return true;
-  }
+  [[nodiscard]] bool is_free(const Eigen::Vector2d& px) const { return !taken_[cell(px)]; }
+  void take(const Eigen::Vector2d& px) { taken_[cell(px)] = true; }
 
  private:
+  [[nodiscard]] std::size_t cell(const Eigen::Vector2d& px) const {
+    const int column = static_cast<int>(px.x()) / kSpacingPx, row = static_cast<int>(px.y()) / kSpacingPx;
+    return static_cast<std::size_t>(row) * columns_ + column;
+  }
+
   int columns_;
   std::vector<bool> taken_;
 };
@@ -51,9 +50,10 @@ void LocalMap::add_landmarks(const RectifiedFrame& frame, KeyFrame& key_frame) {
   for (std::size_t i = 0; i < features.corners.size(); ++i) {
     if (static_cast<int>(key_frame.sightings.size()) >= max_landmarks_) return;
     const Eigen::Vector2d px = features.corners[i].px.cast<double>();
-    if (!spacing.take(px)) continue;
+    if (!spacing.is_free(px)) continue;
     const auto d = refine_disparity(frame, px, features.disparity_px[i]);
     if (!d) continue;
+    spacing.take(px);
     const StereoPixel pixel(px.x(), px.y(), *d);
     Landmark landmark = make_landmark(camera_, frame, key_frame.odometry_from_camera, pixel, next_landmark_++,
                                       disparity_sigma_px_);
@@ -69,21 +69,26 @@ void LocalMap::forget_oldest() {
   std::erase_if(landmarks_, [oldest](const auto& entry) { return entry.second.last_key_frame < oldest; });
 }
 
-std::vector<Sighting> LocalMap::find(const RectifiedFrame& frame, const SE3& odometry_from_camera,
-                                     double radius_px) const {
+FoundLandmarks LocalMap::find(const RectifiedFrame& frame, const SE3& odometry_from_camera,
+                              double radius_px) const {
   std::vector<const Landmark*> newest_first;
   for (const auto& [id, landmark] : landmarks_) newest_first.push_back(&landmark);
   std::stable_sort(newest_first.begin(), newest_first.end(),
                    [](const Landmark* a, const Landmark* b) { return a->last_key_frame > b->last_key_frame; });
   const SE3 camera_from_odometry = odometry_from_camera.inverse();
   Spacing spacing(frame.left.width, frame.left.height);
-  std::vector<Sighting> sightings;
+  FoundLandmarks found;
   for (const Landmark* landmark : newest_first) {
-    if (static_cast<int>(sightings.size()) >= max_landmarks_) break;
+    if (static_cast<int>(found.sightings.size()) >= max_landmarks_) break;
+    const auto expected = expected_pixel(camera_, *landmark, camera_from_odometry);
+    if (!expected || !spacing.is_free(expected->head<2>())) continue;
+    ++found.num_expected;
     const auto sighting = find_landmark(camera_, frame, *landmark, camera_from_odometry, radius_px);
-    if (sighting && spacing.take(sighting->pixel.head<2>())) sightings.push_back(*sighting);
+    if (!sighting || !spacing.is_free(sighting->pixel.head<2>())) continue;
+    spacing.take(sighting->pixel.head<2>());
+    found.sightings.push_back(*sighting);
   }
-  return sightings;
+  return found;
 }
 
 void LocalMap::clear() {

@@ -11,6 +11,12 @@
 
 namespace flogmap {
 
+/// What came of looking for landmarks.
+struct FoundLandmarks {
+  std::vector<Sighting> sightings;
+  int num_expected = 0;  // that the picture should show
+};
+
 class LocalMap {
  public:
   LocalMap(const StereoCamera& camera, int max_key_frames, int max_landmarks, double disparity_sigma_px)
@@ -28,8 +34,8 @@ class LocalMap {
   [[nodiscard]] const Landmark& landmark(std::int64_t id) const { return landmarks_.at(id); }
 
   /// Looks for the landmarks, those of the newest key frame first, until max_landmarks are found.
-  [[nodiscard]] std::vector<Sighting> find(const RectifiedFrame& frame, const SE3& odometry_from_camera,
-                                           double radius_px) const;
+  [[nodiscard]] FoundLandmarks find(const RectifiedFrame& frame, const SE3& odometry_from_camera,
+                                    double radius_px) const;
 
   void clear();
 

@@ -10,17 +10,22 @@ namespace {
 constexpr int kMaxIterations = 12;
 constexpr double kSettled_px = 0.01;
 
+constexpr std::size_t kLanes = 12;  // sums run in lanes that fit vector registers, in a fixed order
+
 template <std::size_t N>
-void take_mean_away(std::array<float, N>& samples) {
+float total(const std::array<float, N>& samples) {
+  static_assert(N % kLanes == 0);
+  std::array<float, kLanes> lanes{};
+  for (std::size_t i = 0; i < N; i += kLanes) {
+    for (std::size_t j = 0; j < kLanes; ++j) lanes[j] += samples[i + j];
+  }
   float sum = 0;
-  for (const float s : samples) sum += s;
-  for (float& s : samples) s -= sum / static_cast<float>(N);
+  for (const float lane : lanes) sum += lane;
+  return sum;
 }
 
-/// Sum of products in a fixed order, in lanes that fit vector registers.
 template <std::size_t N>
 float dot(const std::array<float, N>& a, const std::array<float, N>& b) {
-  constexpr std::size_t kLanes = 12;
   static_assert(N % kLanes == 0);
   std::array<float, kLanes> lanes{};
   for (std::size_t i = 0; i < N; i += kLanes) {
@@ -29,6 +34,30 @@ float dot(const std::array<float, N>& a, const std::array<float, N>& b) {
   float sum = 0;
   for (const float lane : lanes) sum += lane;
   return sum;
+}
+
+template <std::size_t N>
+void take_mean_away(std::array<float, N>& samples) {
+  const float mean = total(samples) / static_cast<float>(N);
+  for (float& s : samples) s -= mean;
+}
+
+/// side x side grey values around a place, bilinear, one pixel apart.
+template <int side>
+std::array<float, side * side> interpolate(const Image<std::uint8_t>& image, const Eigen::Vector2d& centre) {
+  const double left = centre.x() - 0.5 * (side - 1), top = centre.y() - 0.5 * (side - 1);
+  const int u = static_cast<int>(left), v = static_cast<int>(top);
+  const auto a = static_cast<float>(left - u), b = static_cast<float>(top - v);
+  const float w00 = (1 - a) * (1 - b), w10 = a * (1 - b), w01 = (1 - a) * b, w11 = a * b;
+  std::array<float, side * side> samples;
+  for (int y = 0; y < side; ++y) {
+    const std::uint8_t *upper = image.row(v + y) + u, *lower = image.row(v + y + 1) + u;
+    float* out = samples.data() + y * side;
+    for (int x = 0; x < side; ++x) {
+      out[x] = w00 * upper[x] + w10 * upper[x + 1] + w01 * lower[x] + w11 * lower[x + 1];
+    }
+  }
+  return samples;
 }
 
 }  // namespace
@@ -40,24 +69,31 @@ PatchSource::PatchSource(const Image<std::uint8_t>& image, const Eigen::Vector2d
   for (int y = 0; y < kSide; ++y) std::copy_n(image.row(top + y) + left, kSide, grey_.begin() + y * kSide);
 }
 
-float PatchSource::at(const Eigen::Vector2d& offset_px) const {
-  const auto limit = static_cast<float>(kSide) - 1.001F;
-  const float x = std::clamp(static_cast<float>(centre_.x() + offset_px.x()), 0.0F, limit);
-  const float y = std::clamp(static_cast<float>(centre_.y() + offset_px.y()), 0.0F, limit);
-  const int u = static_cast<int>(x), v = static_cast<int>(y);
-  const float a = x - static_cast<float>(u), b = y - static_cast<float>(v);
-  const std::uint8_t* p = grey_.data() + v * kSide + u;
-  return (1 - b) * ((1 - a) * p[0] + a * p[1]) + b * ((1 - a) * p[kSide] + a * p[kSide + 1]);
-}
-
-PatchAligner::PatchAligner(const PatchSource& source, const Eigen::Matrix2d& source_from_picture) {
-  constexpr int kWide = kSide + 2;
-  std::array<float, kWide * kWide> wide;
-  for (int y = 0; y < kWide; ++y) {
-    for (int x = 0; x < kWide; ++x) {
-      wide[y * kWide + x] = source.at(source_from_picture * Eigen::Vector2d(x - 6.5, y - 6.5));
+PatchSource::Samples PatchSource::sample(const Eigen::Matrix2d& source_from_picture) const {
+  const Eigen::Matrix2f step = source_from_picture.cast<float>();
+  const Eigen::Vector2f first = centre_.cast<float>() - step * Eigen::Vector2f::Constant(0.5F * (kSampleSide - 1));
+  constexpr float kLimit = static_cast<float>(kSide) - 1.001F;
+  Samples samples;
+  for (int row = 0; row < kSampleSide; ++row) {
+    for (int column = 0; column < kSampleSide; ++column) {
+      const Eigen::Vector2f at = first + static_cast<float>(column) * step.col(0) + static_cast<float>(row) * step.col(1);
+      const float x = std::clamp(at.x(), 0.0F, kLimit), y = std::clamp(at.y(), 0.0F, kLimit);
+      const int u = static_cast<int>(x), v = static_cast<int>(y);
+      const float a = x - static_cast<float>(u), b = y - static_cast<float>(v);
+      const std::uint8_t* p = grey_.data() + v * kSide + u;
+      const float upper = p[0] + a * static_cast<float>(p[1] - p[0]);
+      const float lower = p[kSide] + a * static_cast<float>(p[kSide + 1] - p[kSide]);
+      samples[row * kSampleSide + column] = upper + b * (lower - upper);
     }
   }
+  return samples;
+}
+
+PatchAligner::PatchAligner(const Image<std::uint8_t>& image, const Eigen::Vector2d& centre_px)
+    : PatchAligner(interpolate<PatchSource::kSampleSide>(image, centre_px)) {}
+
+PatchAligner::PatchAligner(const PatchSource::Samples& wide) {
+  constexpr int kWide = PatchSource::kSampleSide;
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
       const float* p = wide.data() + (y + 1) * kWide + x + 1;
@@ -90,18 +126,8 @@ struct PatchAligner::Sums {
 };
 
 PatchAligner::Sums PatchAligner::correlate(const Image<std::uint8_t>& image, const Eigen::Vector2d& centre) const {
-  const double left = centre.x() - 5.5, top = centre.y() - 5.5;
-  const int u = static_cast<int>(left), v = static_cast<int>(top);
-  const auto a = static_cast<float>(left - u), b = static_cast<float>(top - v);
-  const float w00 = (1 - a) * (1 - b), w10 = a * (1 - b), w01 = (1 - a) * b, w11 = a * b;
-  Samples window;
-  float sum = 0;
-  for (int y = 0; y < kSide; ++y) {
-    const std::uint8_t *upper = image.row(v + y) + u, *lower = image.row(v + y + 1) + u;
-    float* out = window.data() + y * kSide;
-    for (int x = 0; x < kSide; ++x) out[x] = w00 * upper[x] + w10 * upper[x + 1] + w01 * lower[x] + w11 * lower[x + 1];
-    for (int x = 0; x < kSide; ++x) sum += out[x];
-  }
+  const Samples window = interpolate<kSide>(image, centre);
+  const float sum = total(window);
   const float mean = sum / kNumSamples;
   return {dot(gradient_x_, window), dot(gradient_y_, window), dot(patch_, window),
           dot(window, window) - mean * sum};

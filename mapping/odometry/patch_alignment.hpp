@@ -18,8 +18,11 @@ class PatchSource {
 
   static constexpr int kMargin = 15;
 
-  /// Grey value at an offset from the centre, bilinear; clamped to the cut-out.
-  [[nodiscard]] float at(const Eigen::Vector2d& offset_px) const;
+  static constexpr int kSampleSide = 14;
+  using Samples = std::array<float, kSampleSide * kSampleSide>;
+
+  /// 14 x 14 grey values around the centre, bilinear, `source_from_picture` apart; clamped to the cut-out.
+  [[nodiscard]] Samples sample(const Eigen::Matrix2d& source_from_picture) const;
 
  private:
   static constexpr int kSide = 28;
@@ -38,7 +41,11 @@ struct Alignment {
 class PatchAligner {
  public:
   /// The patch as a picture would show it that sees `source_from_picture` times its offsets.
-  PatchAligner(const PatchSource& source, const Eigen::Matrix2d& source_from_picture);
+  PatchAligner(const PatchSource& source, const Eigen::Matrix2d& source_from_picture)
+      : PatchAligner(source.sample(source_from_picture)) {}
+
+  /// The patch around a place at least PatchSource::kMargin pixels inside a picture, as it stands there.
+  PatchAligner(const Image<std::uint8_t>& image, const Eigen::Vector2d& centre_px);
 
   /// Looks from `start` in both directions; nothing if it wanders off by more than `max_shift_px`, leaves the
   /// picture, does not settle or has no texture.
@@ -54,6 +61,7 @@ class PatchAligner {
   static constexpr int kNumSamples = kSide * kSide;
   using Samples = std::array<float, kNumSamples>;
 
+  explicit PatchAligner(const PatchSource::Samples& wide);
   struct Sums;
   [[nodiscard]] Sums correlate(const Image<std::uint8_t>& image, const Eigen::Vector2d& centre) const;
   [[nodiscard]] Eigen::Vector3d shift_and_gain(const Sums& sums, bool row_only) const;

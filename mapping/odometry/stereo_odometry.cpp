@@ -15,7 +15,8 @@ void require(bool fine, const std::string& what) {
 void check(const OdometryOptions& options, const StereoCamera& camera) {
   require(camera.focal_px > 0, "focal_px must be > 0, got " + std::to_string(camera.focal_px));
   require(camera.baseline_m > 0, "baseline_m must be > 0, got " + std::to_string(camera.baseline_m));
-  require(options.min_inliers >= 4, "min_inliers must be >= 4, got " + std::to_string(options.min_inliers));
+  const int min_inliers = options.placement.min_inliers;
+  require(min_inliers >= 4, "min_inliers must be >= 4, got " + std::to_string(min_inliers));
   require(options.max_key_frames >= 1, "max_key_frames must be >= 1, got " + std::to_string(options.max_key_frames));
   require(options.key_frame_overlap > 0 && options.key_frame_overlap < 1,
           "key_frame_overlap must lie between 0 and 1, got " + std::to_string(options.key_frame_overlap));
@@ -31,13 +32,7 @@ struct Current {
   FrameFeatures features;
 };
 
-/// The pose of the current frame and the landmarks that support it.
-struct Placed {
-  Motion motion;  // its "key" frame is the odometry frame
-  std::vector<Sighting> sightings;
-
-  [[nodiscard]] SE3 odometry_from_camera() const { return motion.current_from_key.inverse(); }
-};
+constexpr int kKeyFramesToTry = 3;  // while not lost
 
 }  // namespace
 
@@ -46,7 +41,7 @@ class StereoOdometry::Tracker {
   Tracker(const OdometryOptions& options, const StereoCamera& camera)
       : options_(options),
         camera_(camera),
-        map_(camera, options.max_key_frames, options.max_landmarks, options.motion.disparity_sigma_px) {}
+        map_(camera, options.max_key_frames, options.max_landmarks, options.placement.motion.disparity_sigma_px) {}
 
   Tracking track(const RectifiedFrame& frame, const DisparityImage& disparity) {
     Current current{frame, extract_features(camera_, frame, disparity, options_.corners)};
@@ -56,10 +51,12 @@ class StereoOdometry::Tracker {
       return without_pose(std::move(tracking), too_few_corners(current));
     }
     if (map_.key_frames().empty()) return start(std::move(tracking), current, "");
-    const auto placed = place(current);
-    if (placed) return with_pose(std::move(tracking), current, *placed);
-    if (++num_lost_ <= options_.max_lost_frames) return without_pose(std::move(tracking), reason_);
-    return start_segment(std::move(tracking), current);
+    const int num_key_frames = num_lost_ == 0 ? kKeyFramesToTry : options_.max_key_frames;
+    auto [placement, reason] =
+        place(camera_, map_, frame, current.features, pose_, num_key_frames, options_.placement);
+    if (placement) return with_pose(std::move(tracking), current, *placement);
+    if (++num_lost_ <= options_.max_lost_frames) return without_pose(std::move(tracking), std::move(reason));
+    return start_segment(std::move(tracking), current, reason);
   }
 
   void reset() {
@@ -90,59 +87,21 @@ class StereoOdometry::Tracker {
     return tracking;
   }
 
-  Tracking start_segment(Tracking tracking, Current& current) {
+  Tracking start_segment(Tracking tracking, Current& current, const std::string& reason) {
     map_.clear();
-    return start(std::move(tracking), current,
-                 "not found again (" + reason_ + "): goes on from the last known pose");
+    return start(std::move(tracking), current, "not found again (" + reason + "): goes on from the last known pose");
   }
 
-  /// Against the newest key frame, then against the older ones.
-  std::optional<Placed> place(const Current& current) {
-    const auto& key_frames = map_.key_frames();
-    for (auto key = key_frames.rbegin(); key != key_frames.rend(); ++key) {
-      if (auto placed = place_against(*key, current)) return placed;
-    }
-    return std::nullopt;
-  }
-
-  std::optional<Placed> place_against(const KeyFrame& key, const Current& current) {
-    const auto match = match_frames(camera_, key.matchable(), {current.frame.left, current.features},
-                                    options_.matching, options_.consistency);
-    if (!match) {
-      reason_ = "too few corners agree on a motion";
-      return std::nullopt;
-    }
-    return refine(current, key.odometry_from_camera * match->current_from_key.inverse());
-  }
-
-  std::optional<Placed> refine(const Current& current, const SE3& odometry_from_camera) {
-    Placed placed;
-    placed.sightings = map_.find(current.frame, odometry_from_camera, options_.search_radius_px);
-    std::vector<MotionPoint> points;
-    for (const Sighting& s : placed.sightings) {
-      const Landmark& landmark = map_.landmark(s.landmark);
-      points.push_back({landmark.in_odometry, landmark.covariance, s.pixel});
-    }
-    const auto motion = refine_motion(camera_, points, odometry_from_camera.inverse(), options_.motion);
-    const int num_inliers = motion ? motion->num_inliers : 0;
-    if (num_inliers < options_.min_inliers) {
-      reason_ = counted("too few landmarks found again", num_inliers, options_.min_inliers);
-      return std::nullopt;
-    }
-    placed.motion = *motion;
-    return placed;
-  }
-
-  Tracking with_pose(Tracking tracking, Current& current, const Placed& placed) {
+  Tracking with_pose(Tracking tracking, Current& current, const Placement& placed) {
     num_lost_ = 0;
-    pose_ = placed.odometry_from_camera();
-    const int num_inliers = placed.motion.num_inliers;
+    pose_ = placed.odometry_from_camera;
+    const int num_inliers = placed.num_inliers;
     tracking.state = num_inliers < options_.weak_inliers ? TrackingState::weak : TrackingState::ok;
     if (tracking.state == TrackingState::weak) {
       tracking.reason = counted("few landmarks found again", num_inliers, options_.weak_inliers);
     }
     tracking.odometry_from_camera = pose_;
-    tracking.covariance = placed.motion.covariance;
+    tracking.covariance = placed.covariance;
     tracking.matches = matches_of(placed);
     tracking.new_key_frame = num_inliers < options_.key_frame_overlap *
                                                static_cast<double>(map_.key_frames().back().sightings.size());
@@ -153,7 +112,7 @@ class StereoOdometry::Tracker {
   }
 
   /// The landmarks that the newest key frame sees, too.
-  [[nodiscard]] std::vector<Match> matches_of(const Placed& placed) const {
+  [[nodiscard]] std::vector<Match> matches_of(const Placement& placed) const {
     std::map<std::int64_t, Eigen::Vector2f> key_px;
     for (const Sighting& s : map_.key_frames().back().sightings) key_px[s.landmark] = s.pixel.head<2>().cast<float>();
     std::vector<Match> matches;
@@ -162,15 +121,15 @@ class StereoOdometry::Tracker {
       const auto key = key_px.find(s.landmark);
       if (key == key_px.end()) continue;
       matches.push_back({key->second, s.pixel.head<2>().cast<float>(), static_cast<float>(s.pixel.z()),
-                         placed.motion.inlier[i]});
+                         placed.inlier[i]});
     }
     return matches;
   }
 
-  [[nodiscard]] static std::vector<Sighting> inliers_of(const Placed& placed) {
+  [[nodiscard]] static std::vector<Sighting> inliers_of(const Placement& placed) {
     std::vector<Sighting> inliers;
     for (std::size_t i = 0; i < placed.sightings.size(); ++i) {
-      if (placed.motion.inlier[i]) inliers.push_back(placed.sightings[i]);
+      if (placed.inlier[i]) inliers.push_back(placed.sightings[i]);
     }
     return inliers;
   }
@@ -180,7 +139,6 @@ class StereoOdometry::Tracker {
   LocalMap map_;
   SE3 pose_ = SE3::Identity();  // the last known
   int num_lost_ = 0;            // frames with corners but no pose, in a row
-  std::string reason_;          // why the last attempt failed
 };
 
 StereoOdometry::StereoOdometry(const OdometryOptions& options, const StereoCamera& camera) {

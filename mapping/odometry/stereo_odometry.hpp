@@ -5,24 +5,18 @@
 
 #include "camera/stereo_camera.hpp"
 #include "camera/stereo_frame.hpp"
-#include "mapping/odometry/consistency.hpp"
 #include "mapping/odometry/features.hpp"
-#include "mapping/odometry/frame_matching.hpp"
-#include "mapping/odometry/motion_solver.hpp"
+#include "mapping/odometry/placement.hpp"
 #include "mapping/view.hpp"
 
 namespace flogmap {
 
 struct OdometryOptions {
   CornerOptions corners;
-  MatchingOptions matching;
-  ConsistencyOptions consistency;
-  MotionOptions motion;
+  PlacementOptions placement;
   int max_landmarks = 250;         // followed at a time
-  double search_radius_px = 4;     // around the place where the closed form puts a landmark
   int min_corners = 25;            // with disparity; fewer: the frame cannot be placed
-  int min_inliers = 12;            // fewer: lost
-  int weak_inliers = 30;           // fewer: weak
+  int weak_inliers = 20;           // fewer: weak
   double key_frame_overlap = 0.6;  // a new key frame when a smaller share of the last one's landmarks is seen
   int max_key_frames = 8;          // that are remembered
   int max_lost_frames = 5;         // frames with corners but no pose before a new segment starts

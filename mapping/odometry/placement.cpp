@@ -1,0 +1,94 @@
+#include "mapping/odometry/placement.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace flogmap {
+namespace {
+
+constexpr int kMaxRounds = 3;  // of finding landmarks and solving for the pose again
+
+class Placing {
+ public:
+  Placing(const StereoCamera& camera, const LocalMap& map, const RectifiedFrame& frame,
+          const FrameFeatures& features, const PlacementOptions& options)
+      : camera_(camera), map_(map), frame_(frame), features_(features), options_(options) {}
+
+  /// Each returns true once a convincing placement is found.
+  bool try_key_frame(const KeyFrame& key, PatchFrame patches) {
+    const auto match = match_frames(camera_, key.matchable(), {frame_.left, features_}, patches, options_.matching,
+                                    options_.consistency);
+    return match && try_pose(key.odometry_from_camera * match->current_from_key.inverse());
+  }
+
+  bool try_pose(SE3 odometry_from_camera) {
+    int last_inliers = 0;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      auto placement = test(odometry_from_camera);
+      if (!placement) return false;
+      odometry_from_camera = placement->odometry_from_camera;
+      const int num_inliers = placement->num_inliers;
+      if (num_inliers > best_.num_inliers) best_ = *std::move(placement);
+      if (convincing()) return true;
+      if (num_inliers <= last_inliers) return false;
+      last_inliers = num_inliers;
+    }
+    return false;
+  }
+
+  PlacementResult result() && {
+    if (best_.num_inliers >= options_.min_inliers) return {std::move(best_), ""};
+    if (best_.num_inliers == 0) return {std::nullopt, "too few corners agree on a motion"};
+    return {std::nullopt, "too few landmarks found again (" + std::to_string(best_.num_inliers) + " of " +
+                              std::to_string(options_.min_inliers) + " needed)"};
+  }
+
+ private:
+  [[nodiscard]] bool convincing() const {
+    return best_.num_inliers >= options_.convincing_inliers && best_.share() >= options_.convincing_share;
+  }
+
+  /// Landmarks near a hypothesis, and the pose that they ask for.
+  [[nodiscard]] std::optional<Placement> test(const SE3& odometry_from_camera) const {
+    auto found = map_.find(frame_, odometry_from_camera, options_.search_radius_px);
+    std::vector<MotionPoint> points;
+    for (const Sighting& s : found.sightings) {
+      const Landmark& landmark = map_.landmark(s.landmark);
+      points.push_back({landmark.in_odometry, landmark.covariance, s.pixel});
+    }
+    auto motion = refine_motion(camera_, points, odometry_from_camera.inverse(), options_.motion);
+    if (!motion) return std::nullopt;
+    return Placement{.odometry_from_camera = motion->current_from_key.inverse(),
+                     .covariance = motion->covariance,
+                     .sightings = std::move(found.sightings),
+                     .inlier = std::move(motion->inlier),
+                     .num_inliers = motion->num_inliers,
+                     .num_expected = found.num_expected};
+  }
+
+  const StereoCamera& camera_;
+  const LocalMap& map_;
+  const RectifiedFrame& frame_;
+  const FrameFeatures& features_;
+  const PlacementOptions& options_;
+  Placement best_;
+};
+
+}  // namespace
+
+PlacementResult place(const StereoCamera& camera, const LocalMap& map, const RectifiedFrame& frame,
+                      const FrameFeatures& features, const SE3& last_odometry_from_camera, int num_key_frames,
+                      const PlacementOptions& options) {
+  Placing placing(camera, map, frame, features, options);
+  const auto& key_frames = map.key_frames();
+  const int n = std::min(num_key_frames, static_cast<int>(key_frames.size()));
+  for (int i = 0; i < n; ++i) {
+    const KeyFrame& key = key_frames[key_frames.size() - 1 - i];
+    if (placing.try_key_frame(key, PatchFrame::upright)) return std::move(placing).result();
+    if (placing.try_key_frame(key, PatchFrame::own_orientation)) return std::move(placing).result();
+  }
+  placing.try_pose(last_odometry_from_camera);
+  return std::move(placing).result();
+}
+
+}  // namespace flogmap

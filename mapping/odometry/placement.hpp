@@ -1,0 +1,48 @@
+// Where the current frame stands: hypotheses from corners, each tested on the landmarks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mapping/odometry/consistency.hpp"
+#include "mapping/odometry/frame_matching.hpp"
+#include "mapping/odometry/local_map.hpp"
+#include "mapping/odometry/motion_solver.hpp"
+
+namespace flogmap {
+
+struct PlacementOptions {
+  MatchingOptions matching;
+  ConsistencyOptions consistency;
+  MotionOptions motion;
+  double search_radius_px = 4;      // around the place where a hypothesis puts a landmark
+  int min_inliers = 12;             // fewer: not placed
+  int convincing_inliers = 30;      // this many,
+  double convincing_share = 0.5;    // and this share of the landmarks that should be seen: no other is tried
+};
+
+/// A pose of the current frame and the landmarks that speak for it.
+struct Placement {
+  SE3 odometry_from_camera = SE3::Identity();
+  Covariance6 covariance = Covariance6::Zero();  // of its inverse, perturbation on the left
+  std::vector<Sighting> sightings;
+  std::vector<bool> inlier;  // one per sighting
+  int num_inliers = 0;
+  int num_expected = 0;      // landmarks that should be seen
+
+  [[nodiscard]] double share() const { return num_expected > 0 ? 1.0 * num_inliers / num_expected : 0; }
+};
+
+/// A placement, or why there is none.
+struct PlacementResult {
+  std::optional<Placement> placement;
+  std::string reason;
+};
+
+/// Tries the newest `num_key_frames` key frames, first upright, then turned, then the last known pose, until one
+/// convinces; else the one with most inliers, if they are enough.
+[[nodiscard]] PlacementResult place(const StereoCamera& camera, const LocalMap& map, const RectifiedFrame& frame,
+                                    const FrameFeatures& features, const SE3& last_odometry_from_camera,
+                                    int num_key_frames, const PlacementOptions& options);
+
+}  // namespace flogmap
