@@ -99,6 +99,7 @@ void Pipeline::capture() {
 }
 
 bool Pipeline::read_frame() {
+  if (options_.max_frames > 0 && frames_read_ >= options_.max_frames) return false;
   const auto start = Clock::now();
   std::optional<StereoFrame> frame = source_->next();
   {
@@ -106,6 +107,7 @@ bool Pipeline::read_frame() {
     skipped_ = source_->skipped();
   }
   if (!frame) return false;
+  ++frames_read_;
   statistics_.add(Stage::read, ms_since(start));
   const std::int64_t timestamp_ns = frame->timestamp_ns;
   control_.await_due(timestamp_ns);
@@ -128,6 +130,7 @@ void Pipeline::restart(const std::string& reason, double position_s) {
   if (!info.live && !info.endless) {
     source_->seek(info.first_timestamp_ns + static_cast<std::int64_t>(position_s * kNsPerSecond));
   }
+  frames_read_ = 0;
   generation_ = {generation_.number + 1, random_epoch(), reason};
   frames_.push({generation_, std::nullopt, Clock::now()});
 }

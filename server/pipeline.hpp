@@ -46,6 +46,7 @@ struct PipelineOptions {
   double rate = 1;               // 1 as recorded, 0 as fast as possible
   bool loop = false;             // a recording starts again at its end
   bool end_with_source = false;  // batch: wait() returns when the recording has ended
+  std::int64_t max_frames = 0;   // the source counts as ended after so many; 0 = never
   std::size_t statistics_window = 256;
   ContinuedMap continued;
 };
@@ -112,6 +113,7 @@ class Pipeline {
   BoundedQueue<ForMap> views_;
 
   Generation generation_;             // capture thread
+  std::int64_t frames_read_ = 0;      // of this generation
   std::uint64_t seen_generation_ = 0;  // vision thread
   std::chrono::steady_clock::time_point status_at_;
   std::uint64_t frames_at_status_ = 0;

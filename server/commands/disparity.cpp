@@ -1,0 +1,128 @@
+// flogmap disparity: one pair of pictures in, the disparity of the left one out.
+#include <CLI/CLI.hpp>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "camera/calibration/read_calibration.hpp"
+#include "camera/picture_files.hpp"
+#include "camera/rectifier.hpp"
+#include "mapping/stereo/disparity_matcher.hpp"
+#include "mapping/stereo/segment_filter.hpp"
+#include "server/commands/commands.hpp"
+#include "server/options.hpp"
+#include "server/picture_colours.hpp"
+
+namespace flogmap {
+namespace {
+
+constexpr int kDefaultDisparities = 64;  // where no calibration tells how near things can be
+
+struct DisparityArguments {
+  std::string left, right, out;
+  std::string calibration;
+  StereoOptions stereo;
+};
+
+Picture read_input(const std::string& file) {
+  ReadPicture read = read_picture(file);
+  if (!read.problem.empty()) throw UsageError(read.problem);
+  return std::move(read.picture);
+}
+
+/// Without a calibration the pair is taken as rectified already; then only the size of the camera matters.
+StereoCalibration calibration_for(const DisparityArguments& arguments, const Picture& left) {
+  if (!arguments.calibration.empty()) return read_calibration(arguments.calibration);
+  StereoCalibration calibration;
+  calibration.left = {.width_px = left.width, .height_px = left.height,
+                      .fx_px = static_cast<double>(left.width), .fy_px = static_cast<double>(left.width),
+                      .cx_px = left.width / 2.0, .cy_px = left.height / 2.0};
+  calibration.right = calibration.left;
+  calibration.right_from_left.translation().x() = -0.1;
+  calibration.rectified = true;
+  calibration.origin = arguments.left;
+  return calibration;
+}
+
+/// Portable float map of one channel: rows from the bottom up, +inf where there is no match.
+void write_pfm(const std::string& file, const Image<float>& disparity) {
+  static_assert(std::endian::native == std::endian::little);
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << "Pf\n" << disparity.width << ' ' << disparity.height << "\n-1.0\n";
+  std::vector<float> row(static_cast<std::size_t>(disparity.width));
+  for (int y = disparity.height - 1; y >= 0; --y) {
+    for (int x = 0; x < disparity.width; ++x) {
+      const float d = disparity.at(x, y);
+      row[static_cast<std::size_t>(x)] = std::isnan(d) ? std::numeric_limits<float>::infinity() : d;
+    }
+    out.write(reinterpret_cast<const char*>(row.data()), static_cast<std::streamsize>(row.size() * sizeof(float)));
+  }
+  out.close();
+  if (!out) throw UsageError("--out " + file + ": cannot be written");
+}
+
+std::string beside(const std::string& pfm) {
+  const std::size_t dot = pfm.rfind('.');
+  const bool has_extension = dot != std::string::npos && pfm.find('/', dot) == std::string::npos;
+  return (has_extension ? pfm.substr(0, dot) : pfm) + ".png";
+}
+
+double density_percent(const Image<float>& disparity) {
+  std::size_t valid = 0;
+  for (const float d : disparity.pixels) valid += std::isnan(d) ? 0 : 1;
+  return 100.0 * static_cast<double>(valid) / static_cast<double>(disparity.size());
+}
+
+int compute(DisparityArguments arguments) {
+  if (arguments.out.empty()) throw UsageError("--out is missing; for instance --out D.pfm");
+  StereoFrame frame{.timestamp_ns = 0, .left = read_input(arguments.left), .right = read_input(arguments.right)};
+  if (frame.left.width != frame.right.width || frame.left.height != frame.right.height) {
+    throw UsageError(arguments.right + ": is " + std::to_string(frame.right.width) + "x" +
+                     std::to_string(frame.right.height) + ", but " + arguments.left + " is " +
+                     std::to_string(frame.left.width) + "x" + std::to_string(frame.left.height));
+  }
+  const Rectifier rectifier(calibration_for(arguments, frame.left));
+  const bool know_nearest = !arguments.calibration.empty();
+  if (arguments.stereo.num_disparities == 0 && !know_nearest) arguments.stereo.num_disparities = kDefaultDisparities;
+  const RectifiedFrame rectified = rectifier.rectify(frame);
+  const auto matcher = make_matcher(arguments.stereo, rectifier.camera());
+  const auto start = std::chrono::steady_clock::now();
+  DisparityImage disparity = matcher->match(rectified);
+  remove_small_segments(disparity, min_segment_px(arguments.stereo, rectifier.camera()));
+  const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  write_pfm(arguments.out, disparity.px);
+  const std::string png = beside(arguments.out);
+  if (!write_picture(png, coloured_disparity(disparity.px).picture)) throw UsageError(png + ": cannot be written");
+  std::printf("%dx%d, density %.1f %%, %.1f ms; written: %s, %s\n", disparity.px.width, disparity.px.height,
+              density_percent(disparity.px), ms, arguments.out.c_str(), png.c_str());
+  return 0;
+}
+
+}  // namespace
+
+RunCommand add_disparity(CLI::App& app) {
+  struct State {
+    DisparityArguments arguments;
+    OptionTable table;
+  };
+  auto state = std::make_shared<State>();
+  DisparityArguments& arguments = state->arguments;
+  app.add_option("left", arguments.left, "left picture")->required()->type_name("LEFT");
+  app.add_option("right", arguments.right, "right picture")->required()->type_name("RIGHT");
+  state->table.text("out", "D.pfm", arguments.out, "PFM, float disparities, +inf where there is none; also a PNG");
+  state->table.text("calibration", "FILE", arguments.calibration, "rectify first; otherwise the pair is rectified");
+  add_stereo_options(state->table, arguments.stereo);
+  state->table.attach(app);
+  app.footer("Example: flogmap disparity left.png right.png --out D.pfm --num-disparities 128");
+  return [state] {
+    state->table.apply(all_option_names());
+    return compute(state->arguments);
+  };
+}
+
+}  // namespace flogmap

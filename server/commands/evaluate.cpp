@@ -1,0 +1,89 @@
+// flogmap evaluate: an estimated path against the true one.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "mapping/odometry/trajectory_error.hpp"
+#include "server/commands/commands.hpp"
+#include "server/option_table.hpp"
+
+namespace flogmap {
+namespace {
+
+struct EvaluateArguments {
+  std::string trajectory;
+  std::string ground_truth;
+  bool json = false;
+};
+
+Trajectory read_input(const char* option, const std::string& file) {
+  if (file.empty()) throw UsageError(std::string(option) + " is missing; see flogmap evaluate --help");
+  try {
+    return read_trajectory(file);
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
+  }
+}
+
+TrajectoryError compare(const Trajectory& estimate, const Trajectory& truth) {
+  try {
+    return evaluate_trajectory(estimate, truth);
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
+  }
+}
+
+void print_table(const TrajectoryError& error, std::size_t num_estimated) {
+  std::printf("poses    %d of %zu found a partner; the true path is %.3f m long\n", error.num_poses, num_estimated,
+              error.path_length_m);
+  std::printf("ATE      rmse %.5f m, max %.5f m   (after the best SE(3) alignment, no scale)\n", error.ate_rmse_m,
+              error.ate_max_m);
+  std::printf("RPE      rmse %.5f m, %.4f deg   (from one pose to the next)\n", error.rpe_rmse_m,
+              error.rpe_rmse_deg);
+  std::printf("drift    %.3f %%, %.4f deg/m\n", error.drift_percent, error.drift_deg_per_m);
+  std::printf("end      %.5f m, %.4f deg   (with the first pose taken as exact)\n", error.end_error_m,
+              error.end_error_deg);
+}
+
+void print_json(const TrajectoryError& error) {
+  const nlohmann::json document = {{"poses", error.num_poses},
+                                   {"path_length_m", error.path_length_m},
+                                   {"ate_rmse_m", error.ate_rmse_m},
+                                   {"ate_max_m", error.ate_max_m},
+                                   {"rpe_rmse_m", error.rpe_rmse_m},
+                                   {"rpe_rmse_deg", error.rpe_rmse_deg},
+                                   {"drift_percent", error.drift_percent},
+                                   {"drift_deg_per_m", error.drift_deg_per_m},
+                                   {"end_error_m", error.end_error_m},
+                                   {"end_error_deg", error.end_error_deg}};
+  std::printf("%s\n", document.dump(2).c_str());
+}
+
+int evaluate(const EvaluateArguments& arguments) {
+  const Trajectory estimate = read_input("--trajectory", arguments.trajectory);
+  const Trajectory truth = read_input("--ground-truth", arguments.ground_truth);
+  const TrajectoryError error = compare(estimate, truth);
+  if (arguments.json) {
+    print_json(error);
+  } else {
+    print_table(error, estimate.poses.size());
+  }
+  return 0;
+}
+
+}  // namespace
+
+RunCommand add_evaluate(CLI::App& app) {
+  auto arguments = std::make_shared<EvaluateArguments>();
+  app.add_option("--trajectory", arguments->trajectory, "estimated path, TUM: timestamp tx ty tz qx qy qz qw")
+      ->type_name("FILE");
+  app.add_option("--ground-truth", arguments->ground_truth, "true path: TUM, EuRoC csv or KITTI poses")
+      ->type_name("FILE");
+  app.add_flag("--json", arguments->json, "print one JSON object instead of a table");
+  app.footer("Example: flogmap evaluate --trajectory /tmp/map/trajectory.tum --ground-truth groundtruth.tum");
+  return [arguments] { return evaluate(*arguments); };
+}
+
+}  // namespace flogmap

@@ -1,0 +1,173 @@
+// flogmap map: a recording in, a folder of map files out, as fast as possible.
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "server/commands/commands.hpp"
+#include "server/commands/interrupt_watcher.hpp"
+#include "server/commands/mapping_session.hpp"
+#include "server/commands/progress_bar.hpp"
+#include "server/export/map_files.hpp"
+#include "server/pipeline.hpp"
+#include "server/store/map_digest.hpp"
+
+namespace flogmap {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Keeps the path, shows how far it is. Called by the vision thread; the map itself is taken at the end.
+class MapCollector final : public PipelineObserver {
+ public:
+  explicit MapCollector(std::int64_t num_frames) : progress_("mapping", num_frames) {}
+
+  void map_begins(const MapBegin& begin) override { epoch_ = begin.epoch; }
+  void map_changed(std::uint64_t /*revision*/, const std::vector<TileUpdate>& /*updates*/) override {}
+  void path_grew(const std::vector<TrajectoryEntry>& entries) override {
+    path_.insert(path_.end(), entries.begin(), entries.end());
+  }
+  void frame_tracked(const TrackingReport& report) override {
+    ++frames_;
+    lost_ += report.tracking.state == TrackingState::lost ? 1 : 0;
+    progress_.show(frames_, lost_ > 0 ? std::to_string(lost_) + " lost" : "");
+  }
+  void pictures_taken(const PictureReport& /*report*/) override {}
+  void status_changed(const StatusReport& report) override { alignment_ = report.alignment; }
+
+  void finish() { progress_.finish(); }
+  [[nodiscard]] const std::string& epoch() const { return epoch_; }
+  [[nodiscard]] const std::string& alignment() const { return alignment_; }
+  [[nodiscard]] const std::vector<TrajectoryEntry>& path() const { return path_; }
+
+ private:
+  ProgressBar progress_;
+  std::string epoch_;
+  std::string alignment_;
+  std::vector<TrajectoryEntry> path_;
+  std::int64_t frames_ = 0;
+  std::int64_t lost_ = 0;
+};
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+nlohmann::json statistics(const StatusReport& status, const StoredMap& map, double wall_s) {
+  nlohmann::json document = {{"frames", status.frames},
+                             {"tracked", status.tracked},
+                             {"lost", status.lost},
+                             {"skipped", status.skipped_frames},
+                             {"mapped_views", status.mapped_views},
+                             {"loops", status.loops},
+                             {"wall_s", wall_s},
+                             {"fps", wall_s > 0 ? static_cast<double>(status.frames) / wall_s : 0},
+                             {"peak_rss_mb", peak_rss_mb()},
+                             {"tiles", map.tiles.size()},
+                             {"digest", map_digest(map)}};
+  std::size_t cells = 0;
+  for (const TileUpdate& tile : map.tiles) {
+    for (const Cell& cell : tile.tile->cells) cells += cell.rays > 0 ? 1 : 0;
+  }
+  document["cells"] = cells;
+  document["map_bytes"] = map.tiles.size() * kTileColumns * map.info.grid.num_layers() * sizeof(Cell);
+  for (const StageReport& stage : status.stages) {
+    document[stage.stage + "_median_ms"] = stage.median_ms;
+    document[stage.stage + "_p95_ms"] = stage.p95_ms;
+  }
+  return document;
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::trunc);
+  file << text << '\n';
+  file.close();
+  if (!file) throw std::runtime_error(path.string() + ": cannot be written");
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw UsageError("--out " + folder + ": cannot be made: " + error.message());
+}
+
+std::int64_t frames_to_map(const SourceInfo& info, int max_frames) {
+  if (max_frames > 0) return max_frames;
+  if (info.num_frames) return *info.num_frames;
+  throw UsageError(info.spec + ": has no end; say how many frames to map with --max-frames N");
+}
+
+int run_map(const Options& options, int max_frames, const std::string& options_json) {
+  if (options.out_dir.empty()) throw UsageError("--out is missing; for instance --out /tmp/map");
+  MappingSession session = open_session(options);
+  make_folder(options.out_dir);
+  const StereoCamera camera = session.front_end.camera();
+  const std::int64_t num_frames = frames_to_map(session.source->info(), max_frames);
+  MapCollector collector(num_frames);
+  PipelineOptions pipeline_options;
+  pipeline_options.rate = 0;
+  pipeline_options.end_with_source = true;
+  pipeline_options.max_frames = num_frames;
+  pipeline_options.statistics_window = 1U << 20U;
+  const auto start = Clock::now();
+  Pipeline pipeline(pipeline_options, std::move(session.source), std::move(session.front_end),
+                    std::move(session.integrator), collector);
+  {
+    const InterruptWatcher ctrl_c([&] { pipeline.stop(); });  // what was mapped until then is written
+    pipeline.start();
+    pipeline.wait();
+  }
+  collector.finish();
+  const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+
+  const MapSnapshot snapshot = pipeline.integrator().snapshot();
+  StoredMap map{.epoch = collector.epoch(), .info = snapshot.info, .camera = camera, .revision = snapshot.revision};
+  for (const auto& [index, tile] : snapshot.tiles) map.tiles.push_back({index, tile->revision, tile});
+  map.trajectory = collector.path();
+  map.options_json = options_json;
+  map.calibration_json = calibration_json(session.calibration, camera);
+  write_map_folder(options.out_dir, map, options.serve.operators);
+  const StatusReport status = pipeline.status();
+  const nlohmann::json document = statistics(status, map, wall_s);
+  write_text(std::filesystem::path(options.out_dir) / "stats.json", document.dump(2));
+  std::printf("%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %.1f frames/s; level by %s\n",
+              static_cast<unsigned long long>(status.frames), static_cast<unsigned long long>(status.tracked),
+              static_cast<unsigned long long>(status.lost), static_cast<unsigned long long>(status.skipped_frames),
+              static_cast<unsigned long long>(status.mapped_views), document["fps"].get<double>(),
+              collector.alignment().c_str());
+  for (const std::string& warning : status.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::printf("written to %s: map.flog, fused.png, path.png, layer_*.png, ros/, trajectory.tum, stats.json\n",
+              options.out_dir.c_str());
+  return 0;
+}
+
+}  // namespace
+
+RunCommand add_map(CLI::App& app) {
+  struct State {
+    Options options;
+    OptionTable table;
+    int max_frames = 0;
+  };
+  auto state = std::make_shared<State>();
+  add_source_options(state->table, state->options);
+  add_mapping_options(state->table, state->options);
+  state->table.text("out", "DIR", state->options.out_dir, "folder for the map's files; made if missing");
+  state->table.integer("max-frames", "N", state->max_frames, 0, 1'000'000'000,
+                       "stop after so many frames; 0 = all of the recording, one round of a simulated scene");
+  state->table.attach(app);
+  app.footer("Example: flogmap map --source euroc:/data/MH_01 --out /tmp/map");
+  return [state] {
+    state->table.apply(all_option_names());
+    settle(state->options);
+    return run_map(state->options, state->max_frames, state->table.effective().dump());
+  };
+}
+
+}  // namespace flogmap

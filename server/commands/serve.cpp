@@ -1,0 +1,212 @@
+// flogmap serve: maps and serves until SIGINT or SIGTERM; without a source, serves a stored map.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "server/commands/commands.hpp"
+#include "server/commands/mapping_session.hpp"
+#include "server/commands/stored_control.hpp"
+#include "server/hub.hpp"
+#include "server/map_store.hpp"
+#include "server/pipeline.hpp"
+#include "server/store/store_writer.hpp"
+
+namespace flogmap {
+namespace {
+
+/// Hands everything on to those who show it and to those who keep it.
+class ServeObserver final : public PipelineObserver {
+ public:
+  void connect(Hub* hub, StoreWriter* store) {
+    hub_ = hub;
+    store_ = store;
+  }
+
+  void map_begins(const MapBegin& begin) override {
+    path_ = begin.trajectory;
+    if (store_ != nullptr) store_->begin(begin);
+    hub_->begin(begin);
+  }
+  void map_changed(std::uint64_t revision, const std::vector<TileUpdate>& updates) override {
+    if (store_ != nullptr) store_->publish(updates);
+    hub_->publish(revision, updates);
+  }
+  void path_grew(const std::vector<TrajectoryEntry>& entries) override {
+    path_.insert(path_.end(), entries.begin(), entries.end());
+    if (store_ != nullptr) store_->append_trajectory(entries);
+    // Frames of the first seconds get their poses all at once, when it is decided which way is up. The last of
+    // them comes with its own tracking report.
+    if (entries.size() > 1) {
+      hub_->rewrite_trajectory({path_.begin(), path_.end() - 1}, "levelled");
+    }
+  }
+  void frame_tracked(const TrackingReport& report) override { hub_->publish_tracking(report); }
+  void pictures_taken(const PictureReport& report) override { hub_->publish_pictures(report); }
+  void status_changed(const StatusReport& report) override {
+    StatusReport with_store = report;
+    if (store_ != nullptr) {
+      const StoreState state = store_->state();
+      if (!state.ok) with_store.warnings.push_back(state.problem);
+    }
+    hub_->publish_status(with_store);
+  }
+
+ private:
+  Hub* hub_ = nullptr;
+  StoreWriter* store_ = nullptr;
+  std::vector<TrajectoryEntry> path_;
+};
+
+/// The built page: beside the program in a checkout, or where `cmake --install` puts it.
+std::string find_web_root() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  const auto folder = program.parent_path();
+  for (const auto& candidate : {folder / "../../web/dist", folder / "../share/flogmap/web"}) {
+    if (std::filesystem::exists(candidate / "index.html", error)) {
+      return std::filesystem::weakly_canonical(candidate, error).string();
+    }
+  }
+  return {};
+}
+
+void announce(const Options& options, const Hub& hub, const std::string& what) {
+  const std::string& address = options.serve.listen_address;
+  const bool any = address == "0.0.0.0" || address == "::";
+  const std::string host = any ? "127.0.0.1" : address.find(':') != std::string::npos ? "[" + address + "]" : address;
+  const std::string scheme = options.serve.tls_cert.empty() ? "http" : "https";
+  std::printf("%s: open %s://%s:%u in a browser (Ctrl-C ends)\n", what.c_str(), scheme.c_str(), host.c_str(),
+              static_cast<unsigned>(hub.port()));
+  if (options.serve.web_root.empty()) std::printf("warning: the page is not built; run scripts/build\n");
+  std::fflush(stdout);
+}
+
+MapBegin begin_of(const StoredMap& map, const std::string& reason) {
+  return {.epoch = map.epoch, .info = map.info, .camera = map.camera, .reason = reason, .revision = map.revision,
+          .tiles = map.tiles, .trajectory = map.trajectory};
+}
+
+int serve_stored(const Options& options, const HubInfo& info) {
+  const StoredMap map = load_map(options.store);
+  StoredControl control(options.store);
+  HubInfo with_calibration = info;
+  with_calibration.calibration_json = map.calibration_json;
+  Hub hub(options.serve, control, with_calibration);
+  hub.begin(begin_of(map, "stored"));
+  hub.drain_on_signals();
+  announce(options, hub, "Serving the stored map " + options.store);
+  hub.run();
+  return 0;
+}
+
+/// After a kill, viewers may have seen up to a second more than was stored. A revision far above all that they
+/// can know makes them take every tile anew.
+void outrank_what_viewers_know(StoredMap& map) {
+  constexpr std::uint64_t kFarAbove = 1'000'000;
+  map.revision += kFarAbove;
+  for (TileUpdate& update : map.tiles) {
+    update.tile = std::make_shared<const Tile>(Tile{update.tile->cells, map.revision});
+    update.revision = map.revision;
+  }
+}
+
+/// Takes up the map that the store holds, if there is one.
+ContinuedMap continue_stored(const MapStore& store, const Options& options, MappingSession& session) {
+  std::optional<StoredMap> stored = store.load();
+  if (!stored) return {};
+  check_same_grid(options.store, stored->info.grid, options.flog.grid);
+  if (!store.ended_cleanly()) outrank_what_viewers_know(*stored);
+  session.integrator.restore(snapshot_of(*stored));
+  // A robot is where it was switched off; a recording begins where it always does.
+  if (session.source->info().live && !stored->trajectory.empty() && !options.first_pose) {
+    session.front_end.continue_from(stored->trajectory.back().world_from_camera);
+  }
+  return {stored->epoch, stored->tiles, stored->trajectory};
+}
+
+/// A store that cannot be used is bad input.
+MapStore open_store(const std::string& file) {
+  try {
+    return MapStore(file);
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
+  }
+}
+
+int serve_source(const Options& options, HubInfo info) {
+  MappingSession session = open_session(options);
+  info.calibration_json = calibration_json(session.calibration, session.front_end.camera());
+  std::unique_ptr<StoreWriter> store;
+  PipelineOptions pipeline_options;
+  if (!options.store.empty()) {
+    MapStore file = open_store(options.store);
+    pipeline_options.continued = continue_stored(file, options, session);
+    store = std::make_unique<StoreWriter>(std::move(file), info.config_json, info.calibration_json);
+  }
+  pipeline_options.rate = options.as_fast_as_possible ? 0 : 1;
+  pipeline_options.loop = options.source.loop;
+
+  ServeObserver observer;
+  Pipeline pipeline(pipeline_options, std::move(session.source), std::move(session.front_end),
+                    std::move(session.integrator), observer);
+  Hub hub(options.serve, pipeline.control(), info);
+  observer.connect(&hub, store.get());
+  hub.drain_on_signals();
+  std::exception_ptr failure;
+  {
+    pipeline.start();
+    const std::jthread watch([&] {
+      try {
+        pipeline.wait();
+      } catch (...) {
+        failure = std::current_exception();
+        hub.drain("the mapping failed");
+      }
+    });
+    announce(options, hub, "Mapping " + options.source.spec);
+    hub.run();
+    pipeline.stop();
+  }
+  if (store) {
+    const StoreState saved = store->flush();
+    if (!saved.ok && !failure) throw std::runtime_error(saved.problem);
+  }
+  if (failure) std::rethrow_exception(failure);
+  return 0;
+}
+
+}  // namespace
+
+RunCommand add_serve(CLI::App& app) {
+  struct State {
+    Options options;
+    OptionTable table;
+  };
+  auto state = std::make_shared<State>();
+  add_source_options(state->table, state->options);
+  add_mapping_options(state->table, state->options);
+  add_serve_options(state->table, state->options);
+  state->table.attach(app);
+  app.footer(
+      "Examples: flogmap serve --source sim:room\n"
+      "          flogmap serve --source euroc:/data/MH_01 --store map.flog --listen 127.0.0.1:9000");
+  return [state] {
+    Options& options = state->options;
+    state->table.apply(all_option_names());
+    settle(options);
+    if (options.source.spec.empty() && options.store.empty()) {
+      throw UsageError("say what to serve: --source SPEC to map, --store FILE for a stored map, or both");
+    }
+    if (options.serve.web_root.empty()) options.serve.web_root = find_web_root();
+    HubInfo info;
+    info.config_json = state->table.effective().dump();
+    info.version = FLOGMAP_VERSION;
+    return options.source.spec.empty() ? serve_stored(options, info) : serve_source(options, info);
+  };
+}
+
+}  // namespace flogmap

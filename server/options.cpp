@@ -1,0 +1,203 @@
+#include "server/options.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace flogmap {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr int kMaxThreads = 256;
+
+std::string joined(const std::vector<double>& numbers) {
+  std::string text;
+  for (const double number : numbers) {
+    std::string digits = std::to_string(number);
+    digits.erase(digits.find_last_not_of('0') + 1);
+    if (digits.ends_with('.')) digits.pop_back();
+    text += (text.empty() ? "" : ",") + digits;
+  }
+  return text;
+}
+
+SE3 parse_pose(const std::string& given) {
+  const std::vector<double> n = parse_numbers(given, 7);
+  const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
+  if (std::abs(q.norm() - 1) > 0.01) {
+    throw UsageError("qx,qy,qz,qw must have length 1, has " + std::to_string(q.norm()));
+  }
+  SE3 pose = SE3::Identity();
+  pose.linear() = q.normalized().toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(n[0], n[1], n[2]);
+  return pose;
+}
+
+std::string pose_text(const SE3& pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  const Eigen::Vector3d t = pose.translation();
+  return joined({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
+}
+
+/// A whole number or the word "auto", which is kept as 0.
+Option auto_integer(const std::string& name, int& target, int low, int high, const std::string& help) {
+  const auto parse = [&target, low, high](const std::string& given) {
+    if (given == "auto") {
+      target = 0;
+      return;
+    }
+    const double value = parse_numbers(given, 1)[0];
+    if (value < low || value > high || value != std::floor(value)) {
+      throw UsageError("allowed: auto, or whole numbers from " + std::to_string(low) + " to " +
+                       std::to_string(high));
+    }
+    target = static_cast<int>(value);
+  };
+  return {.name = name, .value_name = "N|auto", .help = help, .parse = parse,
+          .show = [&target] { return target == 0 ? std::string("auto") : std::to_string(target); }};
+}
+
+void add_grid_options(OptionTable& table, Options& options) {
+  FlogOptions& flog = options.flog;
+  table.number("cell-size", "METRES", flog.grid.cell_size_m, 0.002, 1, "side of a cell");
+  table.add({.name = "layers",
+             .value_name = "Z0,Z1,...",
+             .help = "boundaries of the layers, metres above the floor; start 3-5 cm above it",
+             .parse = [&flog](const std::string& text) { flog.grid.layer_bounds_m = parse_numbers(text, 0); },
+             .show = [&flog] { return joined(flog.grid.layer_bounds_m); }});
+  table.number("max-range", "METRES", flog.max_range_m, 0.1, 1000, "farther points only say where it is free");
+  table.integer("row-step", "N", flog.row_step, 1, 64, "use every N-th row of a view");
+  table.number("view-translation-cells", "CELLS", options.front_end.views.translation_cells, 0.001, 1e6,
+               "a view is mapped if the camera moved this far since the last mapped one");
+  table.number("view-translation", "METRES", options.front_end.views.translation_m, 0, 1000,
+               "the same in metres; 0 = by cells");
+  table.add({.name = "view-rotation-deg",
+             .value_name = "DEGREES",
+             .help = "... or turned this far; 0 = half the field of view",
+             .parse =
+                 [&options](const std::string& text) {
+                   const double degrees = parse_numbers(text, 1)[0];
+                   if (degrees < 0 || degrees > 180) throw UsageError("allowed: 0 to 180");
+                   options.front_end.views.rotation_rad = degrees * kDegree;
+                 },
+             .show = [&options] { return joined({options.front_end.views.rotation_rad / kDegree}); }});
+  table.number("full-confidence-rays", "N", flog.full_confidence_rays, 0, 65535,
+               "rays after which a cell is known for sure; 0 = derived from camera and cell size");
+  table.integer("min-rays", "N", flog.min_rays, 1, 65535, "a cell counts as seen from this many rays on");
+  table.choice<IntegratorKind>("integrator", flog.integrator,
+                               {{"fan", IntegratorKind::fan}, {"ray", IntegratorKind::ray}},
+                               "fan: fast; ray: one ray after the other, the reference");
+  table.flag("paper-mode", flog.paper_mode, "literally as in the paper: no floor of the error, eq. (5) as printed");
+}
+
+void add_start_options(OptionTable& table, Options& options) {
+  table.text("poses", "FILE", options.poses_file,
+             "map with these poses (TUM or EuRoC csv) instead of the estimated motion");
+  table.choice<PosesFrame>("poses-frame", options.poses_frame,
+                           {{"rectified", PosesFrame::rectified}, {"raw", PosesFrame::raw}, {"body", PosesFrame::body}},
+                           "what --poses and --first-pose are poses of: the rectified or the raw left camera, or the body");
+  table.add({.name = "first-pose",
+             .value_name = "x,y,z,qx,qy,qz,qw",
+             .help = "where the camera stands at first, in the world (z up, floor at 0)",
+             .parse = [&options](const std::string& text) { options.first_pose = parse_pose(text); },
+             .show = [&options] { return options.first_pose ? pose_text(*options.first_pose) : std::string(); }});
+  table.choice<AlignMode>("align", options.front_end.start.mode,
+                          {{"auto", AlignMode::automatic}, {"none", AlignMode::none},
+                           {"gravity", AlignMode::gravity}, {"ground", AlignMode::ground}},
+                          "how the world is levelled without --first-pose");
+}
+
+}  // namespace
+
+void add_source_options(OptionTable& table, Options& options) {
+  table.text("source", "SPEC", options.source.spec,
+             "kind:where; kinds: " + source_kinds() + "; for instance euroc:DIR or sim:room");
+  table.text("calibration", "FILE", options.source.calibration_file, "instead of what the source carries");
+  table.add({.name = "seed",
+             .value_name = "N",
+             .help = "of everything random; the same seed gives the same map",
+             .parse =
+                 [&options](const std::string& text) {
+                   const double value = parse_numbers(text, 1)[0];
+                   if (value < 0 || value > 4294967295.0 || value != std::floor(value)) {
+                     throw UsageError("allowed: whole numbers from 0 to 4294967295");
+                   }
+                   options.source.seed = static_cast<std::uint64_t>(value);
+                 },
+             .show = [&options] { return std::to_string(options.source.seed); }});
+}
+
+void add_stereo_options(OptionTable& table, StereoOptions& stereo) {
+  table.choice<MatcherKind>("matcher", stereo.matcher, {{"block", MatcherKind::block}, {"sgm", MatcherKind::sgm}},
+                            "dense stereo method");
+  table.integer("min-disparity", "PX", stereo.min_disparity, -1024, 1024, "smallest disparity searched");
+  table.add(auto_integer("num-disparities", stereo.num_disparities, 1, 1024,
+                         "how many disparities are searched; auto = as --nearest needs"));
+  table.number("nearest", "METRES", stereo.nearest_m, 0.01, 1000, "nothing nearer than this is expected");
+}
+
+void add_mapping_options(OptionTable& table, Options& options) {
+  add_grid_options(table, options);
+  add_stereo_options(table, options.front_end.stereo);
+  add_start_options(table, options);
+  table.choice<Operators>("operators", options.serve.operators,
+                          {{"algebraic", Operators::algebraic}, {"minmax", Operators::minmax},
+                           {"lukasiewicz", Operators::lukasiewicz}},
+                          "fuzzy and, or and not of the map's rules");
+  table.integer("threads", "N", options.num_threads, 0, kMaxThreads, "per stage; 0 = every core. Same map for any N");
+}
+
+void add_serve_options(OptionTable& table, Options& options) {
+  ServeOptions& serve = options.serve;
+  const auto show_listen = [&serve] {
+    const bool v6 = serve.listen_address.find(':') != std::string::npos;
+    return (v6 ? "[" + serve.listen_address + "]" : serve.listen_address) + ":" + std::to_string(serve.port);
+  };
+  const auto parse_listen = [&serve](const std::string& text) {
+    const std::size_t colon = text.rfind(':');
+    if (colon == std::string::npos) throw UsageError("must be ADDRESS:PORT, for instance 127.0.0.1:8080");
+    const double port = parse_numbers(text.substr(colon + 1), 1)[0];
+    if (port < 0 || port > 65535 || port != std::floor(port)) throw UsageError("the port must be 0 to 65535");
+    std::string address = text.substr(0, colon);
+    if (address.starts_with('[') && address.ends_with(']')) address = address.substr(1, address.size() - 2);
+    serve.listen_address = address.empty() ? "0.0.0.0" : address;
+    serve.port = static_cast<std::uint16_t>(port);
+  };
+  table.add({.name = "listen", .value_name = "ADDRESS:PORT",
+             .help = "where to serve; port 0 takes a free one", .parse = parse_listen, .show = show_listen});
+  table.choice<bool>("pace", options.as_fast_as_possible, {{"realtime", false}, {"fast", true}},
+                     "replay a recording as it was recorded, or as fast as possible");
+  table.flag("loop", options.source.loop, "start a recording again at its end, with a new map");
+  table.text("store", "FILE", options.store, "keep the map here; it goes on after a restart");
+  table.text("web-root", "DIR", serve.web_root, "folder of the built page");
+  table.number("robot-radius", "METRES", serve.robot.radius_m, 0, 10, "of routes and the inflated maps");
+  table.number("robot-height", "METRES", serve.robot.height_m, 0, 100, "layers above it do not matter; 0 = all do");
+  table.integer("max-connections", "N", serve.max_connections, 1, 65535, "at a time");
+  table.integer("max-connections-per-address", "N", serve.max_connections_per_address, 1, 65535, "at a time");
+  table.flag("insecure-no-auth", serve.insecure_no_auth, "serve other machines without a token");
+}
+
+std::vector<std::string> all_option_names() {
+  Options options;
+  OptionTable table;
+  add_source_options(table, options);
+  add_mapping_options(table, options);
+  add_serve_options(table, options);
+  std::vector<std::string> names = table.names();
+  names.insert(names.end(), {"out", "duration"});
+  return names;
+}
+
+void settle(Options& options) {
+  options.flog.num_threads = options.num_threads;
+  options.front_end.stereo.num_threads = options.num_threads;
+  options.front_end.views.cell_size_m = options.flog.grid.cell_size_m;
+  try {
+    check(options.flog);
+    check(options.front_end.stereo);
+    check(options.front_end.views);
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
+  }
+}
+
+}  // namespace flogmap

@@ -1,0 +1,24 @@
+# The program: options, composition, one file per subcommand.
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+
+flogmap_target(options SOURCES option_table.cpp options.cpp
+               PUBLIC front_end flog camera nlohmann_json::nlohmann_json PRIVATE CLI11::CLI11)
+
+flogmap_target(pipeline SOURCES capture_control.cpp stage_statistics.cpp pipeline.cpp
+               PUBLIC front_end flog camera Threads::Threads)
+
+flogmap_target(flogmap EXECUTABLE
+  SOURCES
+    main.cpp
+    commands/disparity.cpp
+    commands/evaluate.cpp
+    commands/export.cpp
+    commands/interrupt_watcher.cpp
+    commands/map.cpp
+    commands/mapping_session.cpp
+    commands/progress_bar.cpp
+    commands/serve.cpp
+  PRIVATE options pipeline hub map_store map_export trajectory CLI11::CLI11 nlohmann_json::nlohmann_json)
+target_compile_definitions(flogmap PRIVATE FLOGMAP_VERSION="${PROJECT_VERSION}")
+set_target_properties(flogmap PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
