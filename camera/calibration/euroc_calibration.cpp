@@ -1,0 +1,44 @@
+#include "camera/calibration/euroc_calibration.hpp"
+
+#include <stdexcept>
+
+#include "camera/calibration/calibration_checks.hpp"
+#include "camera/calibration/yaml_fields.hpp"
+
+namespace flogmap {
+
+EurocCamera read_euroc_camera(const std::filesystem::path& sensor_yaml) {
+  const YAML::Node root = yaml::load(sensor_yaml);
+  const std::string file = sensor_yaml.string();
+  EurocCamera camera;
+  if (const std::string model = yaml::text(root, {file, "camera_model"}); model != "pinhole") {
+    throw std::runtime_error(file + ": camera_model must be pinhole, got '" + model + "'");
+  }
+  set_resolution(camera.intrinsics, yaml::numbers(root, {file, "resolution"}), file + ": resolution");
+  const std::vector<double> k = yaml::numbers(root, {file, "intrinsics"}, 4);
+  set_pinhole(camera.intrinsics, k[0], k[1], k[2], k[3], file + ": intrinsics");
+  set_distortion(camera.intrinsics, yaml::text(root, {file, "distortion_model"}),
+                 yaml::numbers(root, {file, "distortion_coefficients"}), file + ": distortion_coefficients");
+  camera.body_from_sensor = yaml::transform(root, {file, "T_BS"});
+  return camera;
+}
+
+Eigen::Isometry3d read_euroc_extrinsics(const std::filesystem::path& sensor_yaml) {
+  return yaml::transform(yaml::load(sensor_yaml), {sensor_yaml.string(), "T_BS"});
+}
+
+StereoCalibration read_euroc_pair(const std::filesystem::path& left_yaml,
+                                  const std::filesystem::path& right_yaml) {
+  const EurocCamera left = read_euroc_camera(left_yaml);
+  const EurocCamera right = read_euroc_camera(right_yaml);
+  StereoCalibration calibration;
+  calibration.left = left.intrinsics;
+  calibration.right = right.intrinsics;
+  calibration.body_from_left = left.body_from_sensor;
+  calibration.right_from_left = right.body_from_sensor.inverse() * left.body_from_sensor;
+  calibration.dialect = "euroc";
+  calibration.origin = left_yaml.string();
+  return calibration;
+}
+
+}  // namespace flogmap

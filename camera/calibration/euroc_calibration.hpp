@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+
+#include "camera/calibration/stereo_calibration.hpp"
+
+namespace flogmap {
+
+/// One sensor.yaml of the EuRoC layout, with or without its %YAML line.
+struct EurocCamera {
+  CameraIntrinsics intrinsics;
+  Eigen::Isometry3d body_from_sensor = Eigen::Isometry3d::Identity();  // T_BS
+};
+
+/// Throws std::runtime_error naming file, field, value and what is allowed.
+[[nodiscard]] EurocCamera read_euroc_camera(const std::filesystem::path& sensor_yaml);
+
+/// T_BS alone: what an inertial sensor's sensor.yaml is read for.
+[[nodiscard]] Eigen::Isometry3d read_euroc_extrinsics(const std::filesystem::path& sensor_yaml);
+
+/// The pair from two sensor.yaml files.
+[[nodiscard]] StereoCalibration read_euroc_pair(const std::filesystem::path& left_yaml,
+                                                const std::filesystem::path& right_yaml);
+
+}  // namespace flogmap

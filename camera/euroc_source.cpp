@@ -1,0 +1,81 @@
+#include "camera/euroc_source.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "camera/calibration/euroc_calibration.hpp"
+#include "camera/csv.hpp"
+#include "camera/inertial_up.hpp"
+
+namespace flogmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TimedFile {
+  std::int64_t timestamp_ns;
+  fs::path file;
+};
+
+/// The rows of one camera's data.csv, in order; rows that are malformed or step back in time are skipped.
+std::vector<TimedFile> list_camera(const fs::path& camera, PicturePairList& list) {
+  const fs::path csv = camera / "data.csv";
+  std::vector<TimedFile> files;
+  for (const CsvRow& row : read_csv(csv)) {
+    const std::string where = csv.string() + ":" + std::to_string(row.line);
+    std::int64_t time = 0;
+    if (row.fields.size() < 2 || !parse_number(row.fields[0], time) || row.fields[1].empty()) {
+      list.skip(where + ": not 'timestamp [ns],filename'");
+    } else if (!files.empty() && time <= files.back().timestamp_ns) {
+      list.skip(where + ": time does not increase");
+    } else {
+      files.push_back({time, camera / "data" / row.fields[1]});
+    }
+  }
+  if (files.empty()) throw std::runtime_error(csv.string() + ": lists no pictures");
+  return files;
+}
+
+/// Nearest in time within the tolerance; what has no partner is skipped.
+void pair_by_time(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right,
+                  PicturePairList& list) {
+  constexpr std::int64_t kToleranceNs = 2'000'000;
+  std::size_t l = 0, r = 0;
+  while (l < left.size() || r < right.size()) {
+    const bool both = l < left.size() && r < right.size();
+    const std::int64_t skew = both ? left[l].timestamp_ns - right[r].timestamp_ns : 0;
+    if (both && std::abs(skew) <= kToleranceNs) {
+      list.pairs.push_back({left[l].timestamp_ns, left[l].file, right[r].file});
+      ++l, ++r;
+    } else if (l < left.size() && (!both || skew < 0)) {
+      list.skip(left[l++].file.string() + ": no right picture of that time");
+    } else {
+      list.skip(right[r++].file.string() + ": no left picture of that time");
+    }
+  }
+}
+
+fs::path camera_folder(const fs::path& folder, const char* name) {
+  const fs::path base = fs::is_directory(folder / "mav0") ? folder / "mav0" : folder;
+  if (!fs::is_directory(base / name)) {
+    throw std::runtime_error(folder.string() + ": no folder mav0/" + name + "; the EuRoC layout is expected");
+  }
+  return base / name;
+}
+
+}  // namespace
+
+PicturePairList list_euroc(const fs::path& folder, bool needs_calibration) {
+  if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": no such folder");
+  const fs::path cam0 = camera_folder(folder, "cam0"), cam1 = camera_folder(folder, "cam1");
+  PicturePairList list;
+  if (needs_calibration) {
+    list.calibration = read_euroc_pair(cam0 / "sensor.yaml", cam1 / "sensor.yaml");
+    list.up_in_left_camera = inertial_up(cam0.parent_path() / "imu0", list.calibration->body_from_left);
+  }
+  pair_by_time(list_camera(cam0, list), list_camera(cam1, list), list);
+  return list;
+}
+
+}  // namespace flogmap

@@ -1,0 +1,64 @@
+#include "camera/source_spec.hpp"
+
+#include <array>
+#include <filesystem>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "camera/calibration/detect.hpp"
+#include "camera/euroc_source.hpp"
+#include "camera/simulated_source.hpp"
+#include "camera/simulation/scene_json.hpp"
+
+namespace flogmap {
+namespace {
+
+using Opener = std::unique_ptr<StereoSource> (*)(const SourceOptions& options, const std::string& where);
+
+std::unique_ptr<StereoSource> open_pairs(const SourceOptions& options, PicturePairList list) {
+  if (!options.calibration_file.empty()) list.calibration = read_calibration(options.calibration_file);
+  return std::make_unique<PicturePairSource>(options.spec, std::move(list), options.loop);
+}
+
+std::unique_ptr<StereoSource> open_euroc(const SourceOptions& options, const std::string& where) {
+  return open_pairs(options, list_euroc(where, options.calibration_file.empty()));
+}
+
+std::unique_ptr<StereoSource> open_simulated(const SourceOptions& options, const std::string& where) {
+  return std::make_unique<SimulatedSource>(options.spec, load_scene(where), options.seed);
+}
+
+struct Kind {
+  std::string_view name, where;
+  Opener open;
+};
+
+constexpr std::array kKinds{
+    Kind{"euroc", "DIR", open_euroc},
+    Kind{"sim", "SCENE", open_simulated},
+};
+
+}  // namespace
+
+std::string source_kinds() {
+  std::string text;
+  for (const Kind& kind : kKinds) {
+    text += (text.empty() ? "" : ", ") + std::string(kind.name) + ":" + std::string(kind.where);
+  }
+  return text;
+}
+
+std::unique_ptr<StereoSource> open_source(const SourceOptions& options) {
+  const std::size_t colon = options.spec.find(':');
+  const std::string name = options.spec.substr(0, colon);
+  const std::string where = colon == std::string::npos ? "" : options.spec.substr(colon + 1);
+  for (const Kind& kind : kKinds) {
+    if (kind.name != name) continue;
+    if (where.empty()) break;
+    return kind.open(options, where);
+  }
+  throw std::runtime_error("source '" + options.spec + "' must be one of " + source_kinds());
+}
+
+}  // namespace flogmap

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "camera/stereo_source.hpp"
+
+namespace flogmap {
+
+/// How a user names a source: `spec` is "kind:where", for instance "euroc:/data" or "sim:room".
+struct SourceOptions {
+  std::string spec;
+  std::string calibration_file;  // overrides what the source carries; empty: the source's own
+  bool loop = false;       // a recording begins again at its end; the drop of its timestamp tells the wrap
+  std::uint64_t seed = 1;  // of everything random in a simulated source
+};
+
+/// The kinds of sources this build knows, as "euroc, kitti, ...", for messages and help.
+[[nodiscard]] std::string source_kinds();
+
+/// Opens a source. Throws std::runtime_error with one line that names the spec and what is allowed.
+[[nodiscard]] std::unique_ptr<StereoSource> open_source(const SourceOptions& options);
+
+}  // namespace flogmap
