@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mapping/stereo/opencv_matcher.hpp"
+#include "mapping/stereo/sgm_matcher.hpp"
 
 namespace flogmap {
 namespace {
@@ -48,6 +49,10 @@ std::unique_ptr<DisparityMatcher> make_matcher(const StereoOptions& options, con
   StereoOptions complete = options;
   if (complete.num_disparities == 0) {
     complete.num_disparities = auto_num_disparities(camera, options.nearest_m, options.min_disparity);
+  }
+  if (complete.matcher == MatcherKind::sgm) {
+    complete.num_disparities = (complete.num_disparities + kStep - 1) / kStep * kStep;
+    return make_sgm_matcher(complete, match_kernels(complete.num_disparities));
   }
   return make_opencv_matcher(complete);
 }

@@ -1,0 +1,256 @@
+// The kernels themselves, on the Bytes of the instruction set that the including file is compiled for.
+// Only from kernels_*.cpp; see byte_lanes.hpp for why nothing of the standard library is used here.
+#pragma once
+
+#include "mapping/stereo/simd/byte_lanes.hpp"
+#include "mapping/stereo/simd/kernels.hpp"
+
+namespace flogmap {
+namespace {
+
+constexpr int kLanes = Bytes::kLanes;
+
+/// One pixel of a volume: kVectors registers, lane = disparity index.
+template <int kVectors>
+struct Lanes {
+  Bytes v[kVectors];
+};
+
+template <int kVectors>
+Lanes<kVectors> load_lanes(const std::uint8_t* from) {
+  Lanes<kVectors> out;
+  for (int i = 0; i < kVectors; ++i) out.v[i] = load(from + i * kLanes);
+  return out;
+}
+
+template <int kVectors>
+void store_lanes(std::uint8_t* to, const Lanes<kVectors>& a) {
+  for (int i = 0; i < kVectors; ++i) store(to + i * kLanes, a.v[i]);
+}
+
+template <int kVectors>
+std::uint8_t least(const Lanes<kVectors>& a) {
+  Bytes m = a.v[0];
+  for (int i = 1; i < kVectors; ++i) m = min(m, a.v[i]);
+  return reduce_min(m);
+}
+
+template <int kVectors>
+int first_lane_equal(const Lanes<kVectors>& a, std::uint8_t value) {
+  const Bytes all = splat(value);
+  for (int i = 0; i < kVectors; ++i) {
+    if (const int lane = first_equal(a.v[i], all); lane >= 0) return i * kLanes + lane;
+  }
+  return 0;
+}
+
+/// Every lane takes the one below it; lane 0 takes `first`.
+template <int kVectors>
+Lanes<kVectors> from_below(const Lanes<kVectors>& a, Bytes first) {
+  Lanes<kVectors> out;
+  for (int i = 0; i < kVectors; ++i) out.v[i] = shift_lanes_up(a.v[i], i == 0 ? first : a.v[i - 1]);
+  return out;
+}
+
+/// Every lane takes the one above it; the last takes `last`.
+template <int kVectors>
+Lanes<kVectors> from_above(const Lanes<kVectors>& a, Bytes last) {
+  Lanes<kVectors> out;
+  for (int i = 0; i < kVectors; ++i) {
+    out.v[i] = shift_lanes_down(a.v[i], i + 1 == kVectors ? last : a.v[i + 1]);
+  }
+  return out;
+}
+
+// ---- census -------------------------------------------------------------------------------------------
+
+struct Offset {
+  int x, y;
+};
+
+// Half of the 5 x 5 window: each of these is compared with its mirror image in the window's centre.
+constexpr Offset kMirrored[12] = {{-2, -2}, {-1, -2}, {0, -2}, {1, -2}, {2, -2},  {-2, -1},
+                                  {-1, -1}, {0, -1},  {1, -1}, {2, -1}, {-2, 0}, {-1, 0}};
+// Every second pixel of the window: each of these is compared with the centre.
+constexpr Offset kChecker[12] = {{-2, -2}, {0, -2}, {2, -2}, {-1, -1}, {1, -1}, {-2, 0},
+                                 {2, 0},   {-1, 1}, {1, 1},  {-2, 2},  {0, 2},  {2, 2}};
+
+Bytes census_bit(const std::uint8_t* const* rows, int x, int comparison) {
+  const bool mirrored = comparison < 12;
+  const Offset o = mirrored ? kMirrored[comparison] : kChecker[comparison - 12];
+  const int sign = mirrored ? -1 : 0;
+  const Bytes a = load(rows[kCensusReachPx + o.y] + x + o.x);
+  const Bytes b = load(rows[kCensusReachPx + sign * o.y] + x + sign * o.x);
+  return bit_and(less(a, b), splat(static_cast<std::uint8_t>(1 << (comparison % 8))));
+}
+
+void census_row(const std::uint8_t* const* rows, int width, std::uint8_t* const* planes) {
+  for (int x = 0; x < width; x += kLanes) {
+    for (int plane = 0; plane < kCensusPlanes; ++plane) {
+      Bytes bits = splat(0);
+      for (int i = 0; i < 8; ++i) bits = bit_or(bits, census_bit(rows, x, plane * 8 + i));
+      store(planes[plane] + x, bits);
+    }
+  }
+}
+
+// ---- costs --------------------------------------------------------------------------------------------
+
+template <int kVectors>
+Lanes<kVectors> hamming(const CensusRow& left, const CensusRow& right, int width, int x) {
+  Lanes<kVectors> out;
+  const int first = width - 1 - x;
+  for (int i = 0; i < kVectors; ++i) out.v[i] = splat(0);
+  for (int plane = 0; plane < kCensusPlanes; ++plane) {
+    const Bytes bits = splat(left.plane[plane][x]);
+    for (int i = 0; i < kVectors; ++i) {
+      const Bytes other = load(right.plane[plane] + first + i * kLanes);
+      out.v[i] = add(out.v[i], popcount(bit_xor(bits, other)));
+    }
+  }
+  return out;
+}
+
+template <int kVectors>
+void hamming_row(const CensusRow& left, const CensusRow& right, int width, std::uint8_t* sums) {
+  Lanes<kVectors> here = hamming<kVectors>(left, right, width, 0), before = here;
+  for (int x = 0; x < width; ++x) {
+    const int next_x = x + 1 < width ? x + 1 : x;
+    const Lanes<kVectors> next = hamming<kVectors>(left, right, width, next_x);
+    std::uint8_t* to = sums + x * (kVectors * kLanes);
+    for (int i = 0; i < kVectors; ++i) store(to + i * kLanes, add(add(before.v[i], here.v[i]), next.v[i]));
+    before = here;
+    here = next;
+  }
+}
+
+void window_cost(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, int num_bytes,
+                 std::uint8_t* cost) {
+  const Bytes half = splat(4);
+  for (int i = 0; i < num_bytes; i += kLanes) {
+    const Bytes sum = add(add(load(a + i), load(b + i)), load(c + i));
+    store(cost + i, shift_bits_right<3>(add(sum, half)));
+  }
+}
+
+// ---- semi-global paths --------------------------------------------------------------------------------
+
+/// One step along a path:  L(d) = C(d) + min(L'(d), L'(d-1) + P1, L'(d+1) + P1, min L' + P2) - min L'.
+/// With costs up to 27 and P2 up to 90, L stays below 118; padding lanes are 255 and never win.
+template <int kVectors>
+Lanes<kVectors> path_step(const Lanes<kVectors>& path, std::uint8_t path_min, const std::uint8_t* costs,
+                          const std::uint8_t* padding, Bytes small_step, std::uint8_t jump) {
+  Lanes<kVectors> stepped, out;
+  for (int i = 0; i < kVectors; ++i) stepped.v[i] = add_saturated(path.v[i], small_step);
+  const Lanes<kVectors> below = from_below(stepped, splat(255)), above = from_above(stepped, splat(255));
+  const Bytes jumped = splat(static_cast<std::uint8_t>(path_min + jump)), base = splat(path_min);
+  for (int i = 0; i < kVectors; ++i) {
+    const Bytes cheapest = min(min(path.v[i], jumped), min(below.v[i], above.v[i]));
+    const Bytes L = add(load(costs + i * kLanes), subtract(cheapest, base));
+    out.v[i] = bit_or(L, load(padding + i * kLanes));
+  }
+  return out;
+}
+
+template <int kVectors>
+void paths_row(const std::uint8_t* costs, int width, bool to_the_right, const std::uint8_t* padding,
+               const PathRow& path, std::uint8_t* sums) {
+  constexpr int kStride = kVectors * kLanes;
+  const Bytes small_step = splat(path.small_step);
+  Lanes<kVectors> along;
+  for (int i = 0; i < kVectors; ++i) along.v[i] = splat(0);
+  std::uint8_t along_min = 0;
+  for (int i = 0; i < width; ++i) {
+    const int x = to_the_right ? i : width - 1 - i;
+    const std::uint8_t* C = costs + x * kStride;
+    const std::uint8_t jump = path.jump_from_left[to_the_right ? x : x + 1];
+    along = path_step<kVectors>(along, along_min, C, padding, small_step, jump);
+    along_min = least(along);
+    std::uint8_t* vertical = path.vertical + x * kStride;
+    const Lanes<kVectors> down =
+        path_step<kVectors>(load_lanes<kVectors>(vertical), path.vertical_min[x], C, padding, small_step,
+                            path.jump_from_before[x]);
+    store_lanes(vertical, down);
+    path.vertical_min[x] = least(down);
+    for (int k = 0; k < kVectors; ++k) {
+      store(sums + x * kStride + k * kLanes, add_saturated(along.v[k], down.v[k]));
+    }
+  }
+}
+
+// ---- winner takes all ---------------------------------------------------------------------------------
+
+/// The right picture's winners. Lane d belongs to right pixel x - d, so all lanes move up with every x.
+template <int kVectors>
+struct RightWinners {
+  Lanes<kVectors> cost, index, own_index;
+
+  RightWinners() {
+    std::uint8_t lane[kVectors * kLanes];
+    for (int i = 0; i < kVectors * kLanes; ++i) lane[i] = static_cast<std::uint8_t>(i);
+    own_index = load_lanes<kVectors>(lane);
+    for (int i = 0; i < kVectors; ++i) cost.v[i] = splat(255), index.v[i] = splat(0);
+  }
+
+  void add_pixel(const Lanes<kVectors>& S) {
+    cost = from_below(cost, splat(255));
+    index = from_below(index, splat(0));
+    for (int i = 0; i < kVectors; ++i) {
+      const Bytes cheaper = less(S.v[i], cost.v[i]);
+      cost.v[i] = min(cost.v[i], S.v[i]);
+      index.v[i] = select(cheaper, own_index.v[i], index.v[i]);
+    }
+  }
+};
+
+template <int kVectors>
+void winners_row(const std::uint8_t* a, const std::uint8_t* b, int width, const std::uint8_t* padding,
+                 const WinnersRow& winners) {
+  constexpr int kStride = kVectors * kLanes;
+  RightWinners<kVectors> right;
+  std::uint8_t costs[1 + kStride + 1] = {};
+  for (int x = 0; x < width; ++x) {
+    Lanes<kVectors> S;
+    for (int i = 0; i < kVectors; ++i) {
+      const int at = x * kStride + i * kLanes;
+      S.v[i] = bit_or(average(load(a + at), load(b + at)), load(padding + i * kLanes));
+    }
+    right.add_pixel(S);
+    store_lanes(winners.right + (width - 1 - x), right.index);  // later pixels overwrite all but the final lanes
+    const std::uint8_t cost = least(S);
+    const int best = first_lane_equal(S, cost);
+    store_lanes(costs + 1, S);
+    winners.best[x] = static_cast<std::uint8_t>(best);
+    winners.cost[x] = cost;
+    winners.before[x] = costs[best];
+    winners.after[x] = costs[best + 2];
+  }
+}
+
+// ---- choice by number of disparities -------------------------------------------------------------------
+
+template <int kVectors>
+MatchKernels kernels_of_size(const char* name) {
+  return {name,        kVectors * kLanes,    census_row, hamming_row<kVectors>,
+          window_cost, paths_row<kVectors>, winners_row<kVectors>};
+}
+
+MatchKernels kernels_for(const char* name, int num_disparities) {
+  const int vectors = (num_disparities + kLanes - 1) / kLanes;
+  constexpr int kMost = kMaxVolumeLanes / kLanes;
+  if (vectors <= 1) return kernels_of_size<1>(name);
+  if (vectors <= 2) return kernels_of_size<2>(name);
+  if (vectors <= 3) return kernels_of_size<3>(name);
+  if (vectors <= 4) return kernels_of_size<4>(name);
+  if constexpr (kMost >= 8) {
+    if (vectors <= 6) return kernels_of_size<6>(name);
+    if (vectors <= 8) return kernels_of_size<8>(name);
+  }
+  if constexpr (kMost >= 16) {
+    if (vectors <= 12) return kernels_of_size<12>(name);
+  }
+  return kernels_of_size<kMost>(name);
+}
+
+}  // namespace
+}  // namespace flogmap

@@ -1,0 +1,75 @@
+// The inner loops of both matchers, one row at a time, on bytes. Compiled once per instruction set; all give
+// the same bits. A "volume row" is `width` pixels of `stride` bytes: one byte per disparity, lanes beyond the
+// last disparity are padding.
+#pragma once
+
+#include <cstdint>
+
+namespace flogmap {
+
+inline constexpr int kCensusPlanes = 3;    // 24 comparisons per pixel, a byte per plane
+inline constexpr int kCensusReachPx = 2;   // 5 x 5 window
+inline constexpr int kMaxLanes = 64;       // rows that are read in whole registers need this much slack
+inline constexpr int kMaxVolumeLanes = 256;
+
+/// Pointers to the same row of the three planes.
+struct CensusRow {
+  const std::uint8_t* plane[kCensusPlanes];
+};
+
+/// What one row's winner takes all says. `right` is reversed: entry W-1-x + d belongs to right pixel x - d.
+struct WinnersRow {
+  std::uint8_t* best;    // index of the cheapest disparity, the smallest of equals
+  std::uint8_t* cost;    // its cost
+  std::uint8_t* before;  // cost one disparity less; undefined at index 0
+  std::uint8_t* after;   // cost one disparity more; undefined at the last index
+  std::uint8_t* right;   // best index seen from the right pixel; width + stride entries
+};
+
+/// Costs of changing the disparity from one pixel to the next along a path.
+struct PathRow {
+  std::uint8_t small_step;               // P1: by one
+  const std::uint8_t* jump_from_left;    // P2 between pixel x-1 and x; width + 1 entries
+  const std::uint8_t* jump_from_before;  // P2 between the row before and this one
+  std::uint8_t* vertical;                // volume row: path costs of the row before; overwritten
+  std::uint8_t* vertical_min;            // their minima per pixel
+};
+
+struct MatchKernels {
+  const char* name;
+  int stride;  // bytes per pixel of a volume for this number of disparities
+
+  /// `rows`: five padded rows around the pixel, each readable from -2 to width + 2 + kMaxLanes.
+  /// Planes take width + kMaxLanes entries.
+  void (*census_row)(const std::uint8_t* const* rows, int width, std::uint8_t* const* planes);
+
+  /// Volume row: sum over x-1, x, x+1 (clamped) of the Hamming distances; at most 72.
+  /// `right` is reversed: entry W-1-x + d belongs to left pixel x and disparity index d.
+  void (*hamming_row)(const CensusRow& left, const CensusRow& right, int width, std::uint8_t* sums);
+
+  /// Cost of a 3 x 3 window from three volume rows: (a + b + c + 4) / 8; at most 27.
+  void (*window_cost)(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, int num_bytes,
+                      std::uint8_t* cost);
+
+  /// Semi-global costs of two paths, summed: along the row (to the right, or to the left) and from the row
+  /// before. `padding`: stride bytes, 0xFF in padding lanes, else 0.
+  void (*paths_row)(const std::uint8_t* costs, int width, bool to_the_right, const std::uint8_t* padding,
+                    const PathRow& path, std::uint8_t* sums);
+
+  /// Winners of the mean of two volume rows.
+  void (*winners_row)(const std::uint8_t* a, const std::uint8_t* b, int width, const std::uint8_t* padding,
+                      const WinnersRow& winners);
+};
+
+/// The fastest kernels that this processor runs, for 1 <= num_disparities <= 256.
+MatchKernels match_kernels(int num_disparities);
+
+/// All kernels that this processor runs, plain C++ first: for tests.
+using KernelMaker = MatchKernels (*)(int num_disparities);
+struct KernelMakers {
+  KernelMaker maker[5];
+  int count;
+};
+KernelMakers available_kernels();
+
+}  // namespace flogmap

@@ -1,0 +1,39 @@
+#include "mapping/stereo/winners.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+
+namespace flogmap {
+namespace {
+
+/// Where two lines of the same slope through the three costs meet, px from the middle one, in [-0.5, 0.5].
+float v_fit(int before, int cost, int after) {
+  const int slope = std::max(before, after) - cost;
+  return slope > 0 ? 0.5F * static_cast<float>(before - after) / static_cast<float>(slope) : 0.F;
+}
+
+}  // namespace
+
+WinnersBuffer::WinnersBuffer(int width, int stride)
+    : width_(width), bytes_(static_cast<std::size_t>(width) * 5 + stride) {}
+
+WinnersRow WinnersBuffer::row() {
+  std::uint8_t* p = bytes_.data();
+  return {p, p + width_, p + 2 * width_, p + 3 * width_, p + 4 * width_};
+}
+
+void row_disparities(const WinnersRow& winners, int width, DisparityRange range, int max_left_right_px,
+                     float* disparity) {
+  for (int x = 0; x < width; ++x) {
+    const int best = winners.best[x];
+    const int right_x = x - best - range.min_disparity;
+    disparity[x] = std::numeric_limits<float>::quiet_NaN();
+    if (right_x < 0 || right_x >= width || best + 1 >= range.num_disparities) continue;
+    if (std::abs(winners.right[width - 1 - x + best] - best) > max_left_right_px) continue;
+    const float fraction = best == 0 ? 0.F : v_fit(winners.before[x], winners.cost[x], winners.after[x]);
+    disparity[x] = static_cast<float>(range.min_disparity + best) + fraction;
+  }
+}
+
+}  // namespace flogmap
