@@ -1,0 +1,214 @@
+#include "server/export/path_picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "server/export/exported_file.hpp"
+#include "server/export/map_raster.hpp"
+
+namespace flogmap {
+namespace {
+
+constexpr int kWantedPx = 1400;      // the longer side, if the map is small
+constexpr double kMarginM = 0.25;    // around what was seen
+constexpr double kTickEveryM = 0.5;  // along the path
+constexpr double kTickPx = 13;
+constexpr double kMaxPathCells = 8000;  // a path that strays farther is cut off
+constexpr int kLegendPx = 64;
+constexpr int kLegendWidthPx = 900;  // below that the words do not fit
+
+const cv::Vec3b kPaper{216, 210, 204};  // never seen; blue, green, red
+const cv::Vec3b kFree{255, 255, 255};
+const cv::Scalar kPathColour{200, 90, 20};
+const cv::Scalar kTickColour{60, 160, 240};
+const cv::Scalar kStartColour{60, 160, 30};
+const cv::Scalar kEndColour{40, 40, 210};
+const cv::Scalar kInk{40, 40, 40};
+
+/// A piece of paper for the map, and where things lie on it.
+struct Sheet {
+  MapWindow window;
+  double cell_size_m = 0;
+  int factor = 1;  // pixels along a cell
+  cv::Mat pixels;
+
+  [[nodiscard]] cv::Point2d px(double x_m, double y_m) const {
+    const double column = x_m / cell_size_m - window.first.x;
+    const double row = window.first.y + window.height - y_m / cell_size_m;
+    return {column * factor, row * factor};
+  }
+};
+
+bool has_pose(const TrajectoryEntry& entry) {
+  return entry.state == TrackingState::ok || entry.state == TrackingState::weak;
+}
+
+/// What was seen and where the camera was, as far as a picture of it makes sense.
+MapWindow window_of(const StoredMap& map) {
+  const double a = map.info.grid.cell_size_m;
+  const MapWindow seen = seen_window(map);
+  double left = seen.first.x, right = left + seen.width;
+  double low = seen.first.y, high = low + seen.height;
+  for (const TrajectoryEntry& entry : map.trajectory) {
+    const double x = std::floor(entry.world_from_camera.translation().x() / a);
+    const double y = std::floor(entry.world_from_camera.translation().y() / a);
+    const double width = std::max(right, x + 1) - std::min(left, x);
+    const double height = std::max(high, y + 1) - std::min(low, y);
+    if (!has_pose(entry) || std::max(width, height) > kMaxPathCells) continue;
+    left = std::min(left, x);
+    low = std::min(low, y);
+    right = left + width;
+    high = low + height;
+  }
+  const int margin = static_cast<int>(std::ceil(kMarginM / a));
+  return {{static_cast<int>(left) - margin, static_cast<int>(low) - margin},
+          static_cast<int>(right - left) + 2 * margin,
+          static_cast<int>(high - low) + 2 * margin};
+}
+
+Sheet draw_map(const StoredMap& map, Operators operators) {
+  Sheet sheet{window_of(map), map.info.grid.cell_size_m, 1, {}};
+  const int longer = std::max(sheet.window.width, sheet.window.height);
+  sheet.factor = std::clamp(kWantedPx / longer, 1, 16);
+  const Image<float> values = value_raster(map, sheet.window, {}, operators);
+  const Image<CellClass> classes = class_raster(map, sheet.window, {}, operators);
+  cv::Mat cells(values.height, values.width, CV_8UC3);
+  for (int y = 0; y < values.height; ++y) {
+    for (int x = 0; x < values.width; ++x) {
+      const cv::Vec3b base = classes.at(x, y) == CellClass::unknown ? kPaper : kFree;
+      cells.at<cv::Vec3b>(y, x) = base * (1 - values.at(x, y));
+    }
+  }
+  cv::resize(cells, sheet.pixels, {}, sheet.factor, sheet.factor, cv::INTER_NEAREST);
+  return sheet;
+}
+
+cv::Point2d place(const Sheet& sheet, const TrajectoryEntry& entry) {
+  const Eigen::Vector3d p = entry.world_from_camera.translation();
+  return sheet.px(p.x(), p.y());
+}
+
+/// OpenCV draws at integers; a shift keeps the lines smooth.
+cv::Point fine(cv::Point2d p) {
+  return {static_cast<int>(std::lround(p.x * 16)), static_cast<int>(std::lround(p.y * 16))};
+}
+
+void draw_line(cv::Mat& pixels, cv::Point2d a, cv::Point2d b, const cv::Scalar& colour, int width_px) {
+  cv::line(pixels, fine(a), fine(b), colour, width_px, cv::LINE_AA, 4);
+}
+
+/// Where the camera looks, seen from above; nothing much if it looks straight up or down.
+void draw_heading(Sheet& sheet, const TrajectoryEntry& entry) {
+  const Eigen::Vector3d forward = entry.world_from_camera.linear().col(2);
+  const cv::Point2d at = place(sheet, entry);
+  draw_line(sheet.pixels, at, {at.x + kTickPx * forward.x(), at.y - kTickPx * forward.y()}, kTickColour, 2);
+}
+
+/// Calls draw(from, to) for every step between two frames that follow one another with a pose.
+template <typename Draw>
+void for_each_step(const std::vector<TrajectoryEntry>& trajectory, const Draw& draw) {
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    if (has_pose(trajectory[i - 1]) && has_pose(trajectory[i])) draw(trajectory[i - 1], trajectory[i]);
+  }
+}
+
+void draw_path(Sheet& sheet, const std::vector<TrajectoryEntry>& trajectory) {
+  double since_tick_m = kTickEveryM;
+  for_each_step(trajectory, [&](const TrajectoryEntry& from, const TrajectoryEntry& to) {
+    since_tick_m += (to.world_from_camera.translation() - from.world_from_camera.translation()).norm();
+    if (since_tick_m < kTickEveryM) return;
+    since_tick_m = 0;
+    draw_heading(sheet, to);
+  });
+  for_each_step(trajectory, [&](const TrajectoryEntry& from, const TrajectoryEntry& to) {
+    draw_line(sheet.pixels, place(sheet, from), place(sheet, to), kPathColour, 2);
+  });
+}
+
+void draw_start(cv::Mat& pixels, cv::Point2d at) {
+  cv::circle(pixels, fine(at), 7 * 16, {255, 255, 255}, cv::FILLED, cv::LINE_AA, 4);
+  cv::circle(pixels, fine(at), 5 * 16, kStartColour, cv::FILLED, cv::LINE_AA, 4);
+}
+
+void draw_end(cv::Mat& pixels, cv::Point2d at) {
+  const cv::Point2d outer(6, 6), inner(4, 4);
+  cv::rectangle(pixels, cv::Point(at - outer), cv::Point(at + outer), {255, 255, 255}, cv::FILLED);
+  cv::rectangle(pixels, cv::Point(at - inner), cv::Point(at + inner), kEndColour, cv::FILLED);
+}
+
+void draw_ends(Sheet& sheet, const std::vector<TrajectoryEntry>& trajectory) {
+  const auto first = std::ranges::find_if(trajectory, has_pose);
+  if (first == trajectory.end()) return;
+  const auto last = std::find_if(trajectory.rbegin(), trajectory.rend(), has_pose);
+  draw_start(sheet.pixels, place(sheet, *first));
+  draw_end(sheet.pixels, place(sheet, *last));
+}
+
+void write(cv::Mat& pixels, const std::string& text, int x, int y) {
+  cv::putText(pixels, text, {x, y}, cv::FONT_HERSHEY_SIMPLEX, 0.45, kInk, 1, cv::LINE_AA);
+}
+
+/// A small square of a colour and what it means; returns where the next may begin.
+int draw_key(cv::Mat& pixels, const cv::Scalar& colour, const std::string& text, int x, int y) {
+  cv::rectangle(pixels, {x, y - 10}, {x + 12, y + 2}, colour, cv::FILLED);
+  cv::rectangle(pixels, {x, y - 10}, {x + 12, y + 2}, kInk, 1);
+  write(pixels, text, x + 18, y);
+  return x + 18 + cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 0.45, 1, nullptr).width + 22;
+}
+
+/// The longest of 1, 2, 5, 10 ... metres that takes at most a fifth of the width; at least 0.1 m.
+double scale_bar_m(double width_m) {
+  double best = 0.1;
+  for (const double length_m : {0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0}) {
+    if (length_m <= width_m / 5) best = length_m;
+  }
+  return best;
+}
+
+cv::Mat draw_legend(const Sheet& sheet, int width_px) {
+  cv::Mat legend(kLegendPx, width_px, CV_8UC3, cv::Scalar(255, 255, 255));
+  const double bar_m = scale_bar_m(sheet.window.width * sheet.cell_size_m);
+  const int bar_px = static_cast<int>(std::lround(bar_m / sheet.cell_size_m * sheet.factor));
+  cv::rectangle(legend, {12, 14}, {12 + bar_px, 19}, kInk, cv::FILLED);
+  write(legend, shortest_text(bar_m) + " m", 12 + bar_px + 8, 21);
+  int x = 12;
+  const int y = 50;
+  x = draw_key(legend, {0, 0, 0}, "occupied (darker = surer)", x, y);
+  x = draw_key(legend, kFree, "free", x, y);
+  x = draw_key(legend, kPaper, "never seen", x, y);
+  x = draw_key(legend, kPathColour, "camera path", x, y);
+  x = draw_key(legend, kTickColour, "looking", x, y);
+  x = draw_key(legend, kStartColour, "start", x, y);
+  draw_key(legend, kEndColour, "end", x, y);
+  return legend;
+}
+
+Image<Rgb> image_of(const cv::Mat& pixels) {
+  Image<Rgb> image(pixels.cols, pixels.rows);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto& p = pixels.at<cv::Vec3b>(y, x);
+      image.at(x, y) = {p[2], p[1], p[0]};
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+Image<Rgb> path_picture(const StoredMap& map, Operators operators) {
+  Sheet sheet = draw_map(map, operators);
+  draw_path(sheet, map.trajectory);
+  draw_ends(sheet, map.trajectory);
+  const int width_px = std::max(sheet.pixels.cols, kLegendWidthPx);
+  cv::Mat all(sheet.pixels.rows + kLegendPx, width_px, CV_8UC3, cv::Scalar(kPaper));
+  sheet.pixels.copyTo(all(cv::Rect(0, 0, sheet.pixels.cols, sheet.pixels.rows)));
+  draw_legend(sheet, width_px).copyTo(all(cv::Rect(0, sheet.pixels.rows, width_px, kLegendPx)));
+  return image_of(all);
+}
+
+}  // namespace flogmap
