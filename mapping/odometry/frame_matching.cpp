@@ -21,6 +21,19 @@ float median(std::vector<float> values) {
   return *middle;
 }
 
+/// The closed form knows distances only; pixels know better. Stays where it started if that fails.
+SE3 refined(const StereoCamera& camera, const std::vector<PointPair>& pairs, const SE3& start, double sigma_px) {
+  std::vector<MotionPoint> points;
+  for (const PointPair& pair : pairs) {
+    points.push_back({pair.in_key, point_covariance(camera, pair.in_key, sigma_px), project(camera, pair.in_current)});
+  }
+  MotionOptions options;
+  options.image_sigma_px = sigma_px;
+  options.disparity_sigma_px = sigma_px;
+  const auto motion = refine_motion(camera, points, start, options);
+  return motion ? motion->current_from_key : start;
+}
+
 std::optional<FrameMatch> solve(const StereoCamera& camera, const FrameFeatures& key, const FrameFeatures& current,
                                 std::vector<IndexPair> pairs, int min_consistent,
                                 const ConsistencyOptions& consistency) {
@@ -36,9 +49,9 @@ std::optional<FrameMatch> solve(const StereoCamera& camera, const FrameFeatures&
     weights.push_back(1 / (point_covariance(camera, points[i].in_key).trace() +
                            point_covariance(camera, points[i].in_current).trace()));
   }
-  const auto motion = align_points(chosen, weights);
-  if (!motion) return std::nullopt;
-  match.current_from_key = *motion;
+  const auto start = align_points(chosen, weights);
+  if (!start) return std::nullopt;
+  match.current_from_key = refined(camera, chosen, *start, consistency.image_sigma_px);
   match.pairs = std::move(pairs);
   return match;
 }

@@ -21,6 +21,8 @@ struct Landmark {
   Eigen::Vector3d in_odometry;      // metres
   Eigen::Matrix3d covariance;       // of in_odometry, the anchor's pose taken as exact
   std::int64_t last_key_frame = 0;  // the newest that saw it
+  int num_found = 0;                // frames that showed it
+  int num_missed = 0;               // frames that should have shown it, but did not
 };
 
 /// A landmark found in the current frame.

@@ -7,6 +7,7 @@ namespace flogmap {
 namespace {
 
 constexpr int kSpacingPx = 12;  // between landmarks of one frame
+constexpr int kMissesForgiven = 1;
 
 /// Remembers which parts of a picture are taken.
 class Spacing {
@@ -82,13 +83,23 @@ FoundLandmarks LocalMap::find(const RectifiedFrame& frame, const SE3& odometry_f
     if (static_cast<int>(found.sightings.size()) >= max_landmarks_) break;
     const auto expected = expected_pixel(camera_, *landmark, camera_from_odometry);
     if (!expected || !spacing.is_free(expected->head<2>())) continue;
-    ++found.num_expected;
     const auto sighting = find_landmark(camera_, frame, *landmark, camera_from_odometry, radius_px);
-    if (!sighting || !spacing.is_free(sighting->pixel.head<2>())) continue;
-    spacing.take(sighting->pixel.head<2>());
-    found.sightings.push_back(*sighting);
+    if (!sighting) {
+      found.missed.push_back(landmark->id);
+    } else if (spacing.is_free(sighting->pixel.head<2>())) {
+      spacing.take(sighting->pixel.head<2>());
+      found.sightings.push_back(*sighting);
+    }
   }
   return found;
+}
+
+void LocalMap::note(const std::vector<std::int64_t>& found, const std::vector<std::int64_t>& missed) {
+  for (const std::int64_t id : found) ++landmarks_.at(id).num_found;
+  for (const std::int64_t id : missed) {
+    const auto entry = landmarks_.find(id);
+    if (++entry->second.num_missed > kMissesForgiven + entry->second.num_found) landmarks_.erase(entry);
+  }
 }
 
 void LocalMap::clear() {

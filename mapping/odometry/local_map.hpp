@@ -14,7 +14,7 @@ namespace flogmap {
 /// What came of looking for landmarks.
 struct FoundLandmarks {
   std::vector<Sighting> sightings;
-  int num_expected = 0;  // that the picture should show
+  std::vector<std::int64_t> missed;  // that the picture should show, but does not
 };
 
 class LocalMap {
@@ -36,6 +36,10 @@ class LocalMap {
   /// Looks for the landmarks, those of the newest key frame first, until max_landmarks are found.
   [[nodiscard]] FoundLandmarks find(const RectifiedFrame& frame, const SE3& odometry_from_camera,
                                     double radius_px) const;
+
+  /// Notes which landmarks were found and which were missed by a frame, and forgets those that are missed more
+  /// often than found: hidden ones, and those at a wrong place.
+  void note(const std::vector<std::int64_t>& found, const std::vector<std::int64_t>& missed);
 
   void clear();
 

@@ -45,7 +45,8 @@ class Placing {
 
  private:
   [[nodiscard]] bool convincing() const {
-    return best_.num_inliers >= options_.convincing_inliers && best_.share() >= options_.convincing_share;
+    return best_.num_inliers >= options_.many_inliers ||
+           (best_.num_inliers >= options_.convincing_inliers && best_.share() >= options_.convincing_share);
   }
 
   /// Landmarks near a hypothesis, and the pose that they ask for.
@@ -63,7 +64,7 @@ class Placing {
                      .sightings = std::move(found.sightings),
                      .inlier = std::move(motion->inlier),
                      .num_inliers = motion->num_inliers,
-                     .num_expected = found.num_expected};
+                     .missed = std::move(found.missed)};
   }
 
   const StereoCamera& camera_;

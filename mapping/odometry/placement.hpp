@@ -17,8 +17,9 @@ struct PlacementOptions {
   MotionOptions motion;
   double search_radius_px = 4;      // around the place where a hypothesis puts a landmark
   int min_inliers = 12;             // fewer: not placed
-  int convincing_inliers = 30;      // this many,
-  double convincing_share = 0.5;    // and this share of the landmarks that should be seen: no other is tried
+  int many_inliers = 100;           // a pose with that many is not doubted,
+  int convincing_inliers = 30;      // nor one with this many,
+  double convincing_share = 0.3;    // if they are this share of the landmarks that should be seen
 };
 
 /// A pose of the current frame and the landmarks that speak for it.
@@ -28,9 +29,13 @@ struct Placement {
   std::vector<Sighting> sightings;
   std::vector<bool> inlier;  // one per sighting
   int num_inliers = 0;
-  int num_expected = 0;      // landmarks that should be seen
+  std::vector<std::int64_t> missed;  // landmarks that should be seen, but are not
 
-  [[nodiscard]] double share() const { return num_expected > 0 ? 1.0 * num_inliers / num_expected : 0; }
+  /// Of the landmarks that should be seen, how many are and fit.
+  [[nodiscard]] double share() const {
+    const std::size_t num_expected = sightings.size() + missed.size();
+    return num_expected > 0 ? num_inliers / static_cast<double>(num_expected) : 0;
+  }
 };
 
 /// A placement, or why there is none.

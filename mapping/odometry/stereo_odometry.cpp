@@ -105,6 +105,7 @@ class StereoOdometry::Tracker {
     tracking.matches = matches_of(placed);
     tracking.new_key_frame = num_inliers < options_.key_frame_overlap *
                                                static_cast<double>(map_.key_frames().back().sightings.size());
+    note(placed);
     if (tracking.new_key_frame) {
       map_.add_key_frame(current.frame, std::move(current.features), pose_, inliers_of(placed));
     }
@@ -124,6 +125,14 @@ class StereoOdometry::Tracker {
                          placed.inlier[i]});
     }
     return matches;
+  }
+
+  void note(const Placement& placed) {
+    std::vector<std::int64_t> found, missed = placed.missed;
+    for (std::size_t i = 0; i < placed.sightings.size(); ++i) {
+      (placed.inlier[i] ? found : missed).push_back(placed.sightings[i].landmark);
+    }
+    map_.note(found, missed);
   }
 
   [[nodiscard]] static std::vector<Sighting> inliers_of(const Placement& placed) {
