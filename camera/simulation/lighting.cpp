@@ -1,11 +1,14 @@
 #include "camera/simulation/lighting.hpp"
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <cmath>
+#include <exception>
+#include <mutex>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <thread>
 
 #include "camera/picture_files.hpp"
 #include "camera/simulation/face_tree.hpp"
@@ -17,9 +20,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLightGridM = 0.06;
+constexpr double kLightGridM = 0.08;
 constexpr int kMaxTexels = 4096;
-constexpr int kSkyRays = 24;
+constexpr int kSkyRays = 16;
+constexpr double kCornerLight = 0.35;  // of the ambient light reaches the deepest corner
 constexpr double kSkyReachM = 0.9;     // what is further away does not darken a corner
 constexpr double kLampRadiusM = 0.15;  // soft shadows
 constexpr int kLampRays = 6;
@@ -32,11 +36,12 @@ Vector3d sky_direction(const Face& face, int i, double turn) {
          face.normal * std::sqrt(1 - sine * sine);
 }
 
-double from_everywhere(const FaceTree& tree, const Face& face, const Vector3d& point, double turn) {
+/// The share of directions in which nothing near is in the way.
+double open_share(const FaceTree& tree, const Face& face, const Vector3d& point, double turn) {
   int open = 0;
   for (int i = 0; i < kSkyRays; ++i)
     open += tree.blocked(point, sky_direction(face, i, turn), kSkyReachM) ? 0 : 1;
-  return 0.35 + 0.65 * open / kSkyRays;
+  return static_cast<double>(open) / kSkyRays;
 }
 
 double from_lamp(const FaceTree& tree, const Face& face, const Vector3d& point, const Lamp& lamp,
@@ -55,21 +60,26 @@ double from_lamp(const FaceTree& tree, const Face& face, const Vector3d& point, 
   return sum / kLampRays;
 }
 
-/// Light on a grid of points of the face, coarse because light is smooth.
+/// Light on a grid of points of the face, coarse because light is smooth; empty if the face is hidden
+/// everywhere, as where two boxes touch.
 Image<float> light_map(const Scene& scene, const FaceTree& tree, const Face& face) {
   const Eigen::Vector2i size = (face.extent_m / kLightGridM).array().ceil().cast<int>() + 1;
   Image<float> map(size.x(), size.y());
+  double most_open = 0;
   for (int j = 0; j < map.height; ++j) {
     for (int i = 0; i < map.width; ++i) {
       const double u = std::clamp(face.extent_m.x() * i / (map.width - 1), 0.003, face.extent_m.x() - 0.003);
       const double v = std::clamp(face.extent_m.y() * j / (map.height - 1), 0.003, face.extent_m.y() - 0.003);
       const Vector3d point = face.origin_m + u * face.u_axis + v * face.v_axis + 0.002 * face.normal;
       const double turn = cell_noise(i, j, static_cast<std::uint32_t>(face.pattern_seed));
-      double light = scene.lighting.ambient * from_everywhere(tree, face, point, turn);
+      const double openness = open_share(tree, face, point, turn);
+      most_open = std::max(most_open, openness);
+      double light = scene.lighting.ambient * (kCornerLight + (1 - kCornerLight) * openness);
       for (const Lamp& lamp : scene.lighting.lamps) light += from_lamp(tree, face, point, lamp, turn);
       map.at(i, j) = static_cast<float>(light);
     }
   }
+  if (most_open == 0) return {};
   const cv::Mat view(map.height, map.width, CV_32F, map.pixels.data());
   if (std::min(map.width, map.height) > 2) cv::GaussianBlur(view, view, {3, 3}, 0);  // the rays' randomness
   return map;
@@ -141,6 +151,7 @@ MipTexture paint_face(const Scene& scene, const FaceTree& tree, const Face& face
   const double texel = texel_size_m(scene, face);
   const Eigen::Vector2i size = (face.extent_m / texel).array().ceil().cast<int>().max(2);
   const Image<float> light = light_map(scene, tree, face);
+  if (light.empty()) return MipTexture(Image<std::uint8_t>(2, 2));
   const double u_scale = (light.width - 1) / face.extent_m.x(),
                v_scale = (light.height - 1) / face.extent_m.y();
   Paint paint(scene.materials[face.material], face);
@@ -158,14 +169,30 @@ MipTexture paint_face(const Scene& scene, const FaceTree& tree, const Face& face
 }  // namespace
 
 double texel_size_m(const Scene& scene, const Face& face) {
-  return std::max(scene.texel_m, face.extent_m.maxCoeff() / kMaxTexels);
+  const double wanted = scene.materials[face.material].texel_m;
+  return std::max(wanted > 0 ? wanted : scene.texel_m, face.extent_m.maxCoeff() / kMaxTexels);
 }
 
 std::vector<MipTexture> paint_faces(const Scene& scene, const std::vector<Face>& faces) {
   const FaceTree tree(faces);
-  std::vector<MipTexture> textures;
-  textures.reserve(faces.size());
-  for (const Face& face : faces) textures.push_back(paint_face(scene, tree, face));
+  std::vector<MipTexture> textures(faces.size());
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr problem;
+  std::mutex problem_mutex;
+  const auto paint = [&] {
+    try {
+      for (std::size_t i = next++; i < faces.size(); i = next++)
+        textures[i] = paint_face(scene, tree, faces[i]);
+    } catch (...) {
+      const std::lock_guard lock(problem_mutex);
+      problem = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> painters(std::clamp(std::thread::hardware_concurrency(), 1U, 16U));
+    for (std::jthread& painter : painters) painter = std::jthread(paint);
+  }
+  if (problem) std::rethrow_exception(problem);
   return textures;
 }
 

@@ -13,8 +13,8 @@ namespace flogmap {
 /// std::runtime_error naming a material's unknown pattern or unreadable picture.
 [[nodiscard]] std::vector<MipTexture> paint_faces(const Scene& scene, const std::vector<Face>& faces);
 
-/// The texel size used for a face: the scene's, or larger where the face would need more than 4096 texels a
-/// side.
+/// The texel size used for a face: its material's or the scene's, or larger where the face would need more
+/// than 4096 texels a side.
 [[nodiscard]] double texel_size_m(const Scene& scene, const Face& face);
 
 }  // namespace flogmap

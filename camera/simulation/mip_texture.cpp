@@ -43,6 +43,7 @@ MipTexture::MipTexture(const Image<std::uint8_t>& finest) {
   while (image.width > 2 && image.height > 2) {
     image = halved(image);
     levels_.push_back(padded(image));
+    levels_.back().scale = levels_[levels_.size() - 2].scale / 2;
   }
 }
 

@@ -14,6 +14,7 @@ class MipTexture {
   struct Level {
     std::vector<std::uint8_t> texels;
     int stride = 0;
+    float scale = 1;             // texels of this level per texel of the finest
     float max_x = 0, max_y = 0;  // largest position that may be sampled
   };
 

@@ -1,7 +1,6 @@
 // Smooth random functions of the plane, the same on every machine: integer hashes and a few multiplications.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 namespace flogmap {
@@ -14,11 +13,20 @@ namespace flogmap {
   return h ^ (h >> 15);
 }
 
+/// The largest integer not above x; |x| < 2^31. (std::floor is a call on machines without SSE 4.1.)
+[[nodiscard]] constexpr std::int32_t floor_of(double x) {
+  const auto whole = static_cast<std::int32_t>(x);
+  return whole - (x < whole ? 1 : 0);
+}
+
+/// Uniform in [0, 1) at a point of the integer lattice.
+[[nodiscard]] constexpr double lattice_noise(std::int32_t x, std::int32_t y, std::uint32_t seed) {
+  return mixed(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed) * 0x1p-32;
+}
+
 /// Uniform in [0, 1), constant on the unit squares of the plane.
-[[nodiscard]] inline double cell_noise(double x, double y, std::uint32_t seed) {
-  const auto ix = static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(x)));
-  const auto iy = static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(y)));
-  return mixed(ix, iy, seed) * 0x1p-32;
+[[nodiscard]] constexpr double cell_noise(double x, double y, std::uint32_t seed) {
+  return lattice_noise(floor_of(x), floor_of(y), seed);
 }
 
 [[nodiscard]] constexpr double smooth_step(double edge0, double edge1, double x) {
@@ -28,16 +36,18 @@ namespace flogmap {
 }
 
 /// Smooth in [0, 1], with features of about one unit.
-[[nodiscard]] inline double value_noise(double x, double y, std::uint32_t seed) {
-  const double fx = std::floor(x), fy = std::floor(y);
-  const double tx = smooth_step(0, 1, x - fx), ty = smooth_step(0, 1, y - fy);
-  const double low = cell_noise(fx, fy, seed) * (1 - tx) + cell_noise(fx + 1, fy, seed) * tx;
-  const double high = cell_noise(fx, fy + 1, seed) * (1 - tx) + cell_noise(fx + 1, fy + 1, seed) * tx;
-  return low * (1 - ty) + high * ty;
+[[nodiscard]] constexpr double value_noise(double x, double y, std::uint32_t seed) {
+  const std::int32_t ix = floor_of(x), iy = floor_of(y);
+  const double fx = x - ix, fy = y - iy;
+  const double tx = fx * fx * (3 - 2 * fx), ty = fy * fy * (3 - 2 * fy);
+  const double a = lattice_noise(ix, iy, seed), b = lattice_noise(ix + 1, iy, seed);
+  const double c = lattice_noise(ix, iy + 1, seed), d = lattice_noise(ix + 1, iy + 1, seed);
+  const double low = a + (b - a) * tx, high = c + (d - c) * tx;
+  return low + (high - low) * ty;
 }
 
 /// Sum of `octaves` noises, each twice as fine and half as strong; in [0, 1], mean one half.
-[[nodiscard]] inline double cloud_noise(double x, double y, int octaves, std::uint32_t seed) {
+[[nodiscard]] constexpr double cloud_noise(double x, double y, int octaves, std::uint32_t seed) {
   double sum = 0, weight = 0, amplitude = 1;
   for (int octave = 0; octave < octaves; ++octave) {
     sum += amplitude * value_noise(x, y, seed + static_cast<std::uint32_t>(octave));

@@ -13,7 +13,7 @@ namespace {
 
 double unit(double tone) { return std::clamp(tone, 0.0, 1.0); }
 
-double fraction(double x) { return x - std::floor(x); }
+double fraction(double x) { return x - floor_of(x); }
 
 /// 1 inside [low, high], falling to 0 within `edge` outside it.
 double band(double x, double low, double high, double edge = 0.002) {
@@ -26,7 +26,7 @@ double box_band(const PatternPoint& p, double u0, double v0, double u1, double v
 
 /// Lines of something like print in the rectangle: words as dark dashes.
 double print(const PatternPoint& p, double u0, double v0, double u1, double v1, double line_m) {
-  const double line = std::floor((p.v - v0) / line_m);
+  const double line = floor_of((p.v - v0) / line_m);
   const double word = cell_noise((p.u - u0) / (1.3 * line_m), line, p.seed + 91);
   const double ink = band(fraction((p.v - v0) / line_m), 0.25, 0.7, 0.1) * (word > 0.28 ? 1.0 : 0.0);
   return ink * box_band(p, u0, v0, u1, v1);
@@ -41,10 +41,10 @@ double grain(double along, double across, std::uint32_t seed) {
 }
 
 double planks(const PatternPoint& p) {
-  const double row = std::floor(p.v / p.size);
+  const double row = floor_of(p.v / p.size);
   const double length = 9 * p.size;
   const double along = p.u + length * cell_noise(row, 3, p.seed);
-  const double column = std::floor(along / length);
+  const double column = floor_of(along / length);
   const double tone = cell_noise(row, column, p.seed + 1);
   const auto plank = mixed(static_cast<std::uint32_t>(static_cast<int>(row)),
                            static_cast<std::uint32_t>(static_cast<int>(column)), p.seed);
@@ -61,9 +61,9 @@ double wood(const PatternPoint& p) {
 
 double bricks(const PatternPoint& p) {
   const double height = p.size / 3;
-  const double row = std::floor(p.v / height);
+  const double row = floor_of(p.v / height);
   const double along = p.u / p.size + 0.5 * fraction(row / 2) * 2;
-  const double tone = cell_noise(std::floor(along), row, p.seed + 2);
+  const double tone = cell_noise(floor_of(along), row, p.seed + 2);
   const double wobble = 0.006 * (value_noise(p.u * 40, p.v * 40, p.seed) - 0.5);
   const double from_side = p.size * std::min(fraction(along), 1 - fraction(along)) + wobble;
   const double from_bed = height * std::min(fraction(p.v / height), 1 - fraction(p.v / height)) + wobble;
@@ -112,8 +112,8 @@ double carpet(const PatternPoint& p) {
 double rug(const PatternPoint& p) {
   const double from_edge = std::min({p.u, p.v, p.width - p.u, p.height - p.v});
   const double step = 0.012;
-  const double x = std::abs(fraction(std::floor(p.u / step) * step / p.size) - 0.5);
-  const double y = std::abs(fraction(std::floor(p.v / step) * step / p.size) - 0.5);
+  const double x = std::abs(fraction(floor_of(p.u / step) * step / p.size) - 0.5);
+  const double y = std::abs(fraction(floor_of(p.v / step) * step / p.size) - 0.5);
   const double diamond = x + y;
   double tone = 0.32 + 0.38 * band(diamond, 0.2, 0.3, 0.01) + 0.3 * band(diamond, -1, 0.1, 0.01);
   tone += 0.25 * (cell_noise(p.u / p.size, p.v / p.size, p.seed) - 0.5);
@@ -143,7 +143,7 @@ double cardboard(const PatternPoint& p) {
 double books(const PatternPoint& p) {
   constexpr double kPitch = 0.034;
   const auto boundary = [&](double i) { return (i + 0.55 * (cell_noise(i, 7, p.seed) - 0.5)) * kPitch; };
-  double book = std::floor(p.u / kPitch);
+  double book = floor_of(p.u / kPitch);
   if (p.u < boundary(book)) book -= 1;
   if (p.u >= boundary(book + 1)) book += 1;
   const double left = boundary(book), right = boundary(book + 1);

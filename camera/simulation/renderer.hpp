@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "camera/image.hpp"
@@ -38,7 +40,9 @@ class Renderer {
   void shade(RenderedView& view) const;
   void smooth_outlines(RenderedView& view) const;
   [[nodiscard]] bool is_outline(int x, int y) const;
-  [[nodiscard]] std::uint8_t outline_grey(int x, int y) const;
+  [[nodiscard]] std::uint8_t outline_grey(int x, int y, std::uint8_t otherwise) const;
+  [[nodiscard]] std::int32_t nearest_at(double x, double y, std::span<const std::int32_t> candidates) const;
+  [[nodiscard]] std::int32_t grey_at(std::int32_t k, double x, double y) const;
 
   Scene scene_;
   std::vector<Face> faces_;

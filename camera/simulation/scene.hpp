@@ -18,6 +18,7 @@ struct Material {
   double size_m = 0.2;     // of the pattern's unit: a plank's width, a brick's length, a tile's side
   double dark = 0.2;       // reflectance [0, 1] of the pattern's darkest tone
   double bright = 0.8;
+  double texel_m = 0;  // size of its texels; 0: the scene's
 };
 
 enum class SolidKind { box, cylinder, mesh, hall };  // a hall is a box seen from inside
