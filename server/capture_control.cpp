@@ -174,7 +174,7 @@ void CaptureControl::failed(const std::string& reason) {
 void CaptureControl::drain() {
   const std::scoped_lock lock(mutex_);
   stop_ = true;
-  state_ = SessionState::draining;
+  if (state_ != SessionState::failed) state_ = SessionState::draining;
   changed_.notify_all();
 }
 

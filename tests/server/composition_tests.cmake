@@ -1,4 +1,5 @@
+find_package(CLI11 REQUIRED)
 flogmap_test(composition_tests
-  SOURCES server/bounded_queue_test.cpp server/capture_control_test.cpp server/option_table_test.cpp
-          server/stage_statistics_test.cpp server/pipeline_test.cpp
-  LINK pipeline options)
+  SOURCES bounded_queue_test.cpp capture_control_test.cpp option_table_test.cpp stage_statistics_test.cpp
+          pipeline_test.cpp
+  LINK pipeline options CLI11::CLI11)

@@ -110,7 +110,8 @@ TEST(Options, EveryDefaultReadsBackFromItsOwnText) {
   add_source_options(table, options);
   add_mapping_options(table, options);
   add_serve_options(table, options);
-  for (const auto& [name, entry] : table.effective().items()) {
+  const nlohmann::json effective = table.effective();
+  for (const auto& [name, entry] : effective.items()) {
     const auto text = entry["value"].get<std::string>();
     if (text.empty()) continue;  // not set
     EXPECT_NO_THROW(table.set(name, text, "test")) << name << " = " << text;

@@ -2,57 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
 
 #include "camera/source_spec.hpp"
+#include "tests/support/memory_source.hpp"
 
 namespace flogmap {
 namespace {
 
 constexpr int kFrames = 8;
-
-/// The simulated room as a recording of a few frames: seekable, and failing on demand.
-class ShortRecording final : public StereoSource {
- public:
-  explicit ShortRecording(int fail_at = -1) : fail_at_(fail_at) {
-    const auto room = open_source({.spec = "sim:room", .calibration_file = {}, .loop = false, .seed = 1});
-    calibration_ = room->calibration();
-    first_pose_ = room->true_pose(room->info().first_timestamp_ns);
-    for (int i = 0; i < kFrames; ++i) frames_.push_back(*room->next());
-  }
-
-  std::optional<StereoFrame> next() override {
-    if (stopped_ || next_ >= frames_.size()) return std::nullopt;
-    if (static_cast<int>(next_) == fail_at_) throw std::runtime_error("the cable is out");
-    return frames_[next_++];
-  }
-  void stop() override { stopped_ = true; }
-  [[nodiscard]] SourceInfo info() const override {
-    SourceInfo info;
-    info.spec = "test:recording";
-    info.num_frames = kFrames;
-    info.first_timestamp_ns = frames_.front().timestamp_ns;
-    info.last_timestamp_ns = frames_.back().timestamp_ns;
-    return info;
-  }
-  [[nodiscard]] std::optional<StereoCalibration> calibration() const override { return calibration_; }
-  bool seek(std::int64_t timestamp_ns) override {
-    for (next_ = 0; next_ < frames_.size() && frames_[next_].timestamp_ns < timestamp_ns;) ++next_;
-    return true;
-  }
-  [[nodiscard]] std::optional<SE3> first_pose() const { return first_pose_; }
-
- private:
-  const int fail_at_;
-  std::atomic<bool> stopped_ = false;
-  std::size_t next_ = 0;
-  std::vector<StereoFrame> frames_;
-  std::optional<StereoCalibration> calibration_;
-  std::optional<SE3> first_pose_;
-};
 
 /// Writes down what it hears, and lets the test wait for it.
 class Witness final : public PipelineObserver {
@@ -102,9 +62,12 @@ class Witness final : public PipelineObserver {
 };
 
 std::unique_ptr<Pipeline> make_pipeline(PipelineObserver& observer, bool end_with_source, int fail_at = -1) {
-  auto source = std::make_unique<ShortRecording>(fail_at);
+  static const auto recorded = record_frames(
+      *open_source({.spec = "sim:room", .calibration_file = {}, .loop = false, .seed = 1}), kFrames);
+  auto source = std::make_unique<MemorySource>(recorded);
+  if (fail_at >= 0) source->fail_at(static_cast<std::size_t>(fail_at));
   FrontEndOptions options;
-  options.first_world_from_camera = source->first_pose();
+  options.first_world_from_camera = recorded->first_pose;
   FrontEnd front_end(options, Rectifier(*source->calibration()), std::nullopt, std::nullopt);
   MapIntegrator integrator(FlogOptions{}, front_end.camera(), front_end.max_disparity_px());
   PipelineOptions pipeline_options;
