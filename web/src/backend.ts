@@ -1,0 +1,74 @@
+// What the page asks the server for outside the stream: steering, routes, files. One implementation per kind of server.
+
+export interface PlaybackChange {
+  readonly position_s?: number;
+  readonly rate?: number;
+  readonly paused?: boolean;
+}
+
+export interface Route {
+  readonly points: readonly { readonly x: number; readonly y: number }[];
+  readonly lengthM: number;
+  readonly clearanceM: number;
+}
+
+export interface Backend {
+  pause(): Promise<void>;
+  resume(): Promise<void>;
+  reset(): Promise<void>;
+  changePlayback(change: PlaybackChange): Promise<void>;
+  step(): Promise<void>;
+  route(from: Spot, to: Spot, robotRadiusM: number): Promise<Route>;
+  /** Addresses to open or copy; undefined where there is no such server. */
+  exportUrl(format: string): string | undefined;
+  cellUrl(x: number, y: number): string | undefined;
+}
+
+export interface Spot {
+  readonly x: number;
+  readonly y: number;
+}
+
+/** Why the server said no, in its own words. */
+export class Refusal extends Error {}
+
+type Fetch = (input: string, init?: RequestInit) => Promise<Response>;
+
+/** The REST interface under `base`, for instance "http://host/api/v1/". */
+export function restBackend(base: string, ask: Fetch = (input, init) => fetch(input, init)): Backend {
+  const send = async (method: string, path: string, body?: unknown): Promise<unknown> => {
+    const init: RequestInit = { method, ...(body === undefined ? {} : { body: JSON.stringify(body), headers: { 'Content-Type': 'application/json' } }) };
+    const response = await ask(base + path, init).catch(() => {
+      throw new Refusal('the server cannot be reached');
+    });
+    const answer: unknown = await response.json().catch(() => ({}));
+    if (!response.ok) throw new Refusal(wordsOf(answer) ?? `the server answered ${response.status}`);
+    return answer;
+  };
+  const post = async (path: string): Promise<void> => void (await send('POST', path));
+  return {
+    pause: () => post('session:pause'),
+    resume: () => post('session:resume'),
+    reset: () => post('session:reset'),
+    step: () => post('playback:step'),
+    changePlayback: async (change) => void (await send('PATCH', 'playback', change)),
+    route: async (from, to, radius) => routeFrom(await send('POST', 'maps/live/route', { from: [from.x, from.y], to: [to.x, to.y], robot_radius_m: radius })),
+    exportUrl: (format) => `${base}maps/live/export?format=${format}`,
+    cellUrl: (x, y) => `${base}maps/live/cell?x=${x.toFixed(3)}&y=${y.toFixed(3)}`,
+  };
+}
+
+function wordsOf(problem: unknown): string | undefined {
+  const { detail, title } = (problem ?? {}) as { detail?: unknown; title?: unknown };
+  return typeof detail === 'string' && detail ? detail : typeof title === 'string' ? title : undefined;
+}
+
+function routeFrom(answer: unknown): Route {
+  const { points, path, length_m, clearance_m } = answer as Record<string, unknown>;
+  const list = (Array.isArray(points) ? points : Array.isArray(path) ? path : []) as unknown[];
+  return {
+    points: list.map((p) => (Array.isArray(p) ? { x: Number(p[0]), y: Number(p[1]) } : { x: Number((p as Spot).x), y: Number((p as Spot).y) })),
+    lengthM: Number(length_m ?? 0),
+    clearanceM: Number(clearance_m ?? 0),
+  };
+}

@@ -1,0 +1,18 @@
+// Steering for the simulated room.
+
+import { Refusal, type Backend } from '../backend';
+import type { MockServer } from './mock_server';
+
+export function mockBackend(server: MockServer): Backend {
+  const no = (what: string) => (): Promise<never> => Promise.reject(new Refusal(`${what} needs a real server; this room is simulated in the page`));
+  return {
+    pause: () => Promise.resolve(server.order('pause')),
+    resume: () => Promise.resolve(server.order('resume')),
+    reset: () => Promise.resolve(server.order('reset')),
+    changePlayback: no('Replay'),
+    step: no('Replay'),
+    route: no('A route'),
+    exportUrl: () => undefined,
+    cellUrl: () => undefined,
+  };
+}

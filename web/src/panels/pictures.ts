@@ -1,0 +1,131 @@
+// What the camera sees: left picture with the tracked corners, disparity with its scale, and how old they are.
+
+import type { ImageEvent } from '../decode';
+import { ImageStream } from '../gen/flogmap/v1/stream_pb';
+import { cssColour, rampColour } from '../palette';
+import type { Page } from '../page';
+import { h, setText } from '../ui/dom';
+import { section, slider, toggle } from '../ui/controls';
+
+const INLIER = '#3ddc97';
+const OUTLIER = '#ff5d6c';
+const STALE_AFTER_MS = 3000;
+
+export function picturesPanel(page: Page): HTMLElement {
+  const left = picture(page, ImageStream.LEFT, 'Left', 'No picture yet. It comes with the first frame.');
+  const disparity = picture(page, ImageStream.DISPARITY, 'Disparity', 'No disparity yet.');
+  const scale = disparityScale(page);
+  const features = toggle('Tracked corners', (showFeatures) => page.settings.set({ showFeatures }), 'Corners that agree on the motion, and those that do not');
+  const rate = slider('Pictures a second', { min: 0, max: 15, step: 1 }, (value) => (value === 0 ? 'off' : `${value}`), (imageFps) => page.settings.set({ imageFps }));
+  page.settings.watch(['showFeatures', 'imageFps'], (now) => {
+    features.show(now.showFeatures);
+    rate.show(now.imageFps);
+    left.redraw();
+  });
+  page.live.featuresChanged.on(() => left.redraw());
+  return section('Camera', 'camera', left.element, disparity.element, scale, features.element, rate.element);
+}
+
+interface Picture {
+  readonly element: HTMLElement;
+  redraw(): void;
+}
+
+function picture(page: Page, stream: ImageStream, title: string, emptyText: string): Picture {
+  const canvas = h('canvas', { width: 4, height: 3, role: 'img', 'aria-label': `${title} picture of the camera` });
+  const age = h('span', { class: 'picture-age' });
+  const readout = h('span', { class: 'picture-readout' });
+  const empty = h('p', { class: 'picture-empty' }, emptyText);
+  const element = h('figure', { class: 'picture' }, canvas, empty, h('figcaption', {}, h('span', {}, title), readout, age));
+  let bitmap: ImageBitmap | null = null;
+  const redraw = (): void => {
+    if (bitmap) paint(page, canvas, bitmap, stream);
+  };
+  page.live.imageChanged.on((changed) => {
+    const image = changed === stream ? page.live.images.get(stream) : undefined;
+    if (!image) return;
+    void createImageBitmap(new Blob([image.data], { type: image.mediaType })).then((next) => {
+      bitmap?.close();
+      bitmap = next;
+      empty.hidden = true;
+      redraw();
+    }, () => setText(age, 'unreadable picture'));
+  });
+  if (stream === ImageStream.DISPARITY) depthUnderCursor(page, canvas, readout);
+  setInterval(() => showAge(page, stream, age), 500);
+  return { element, redraw };
+}
+
+function showAge(page: Page, stream: ImageStream, age: HTMLElement): void {
+  const image = page.live.images.get(stream);
+  if (!image) return;
+  const ms = performance.now() - image.receivedAt;
+  age.classList.toggle('old', ms > STALE_AFTER_MS);
+  setText(age, ms > STALE_AFTER_MS ? `${Math.round(ms / 1000)} s old` : `t = ${(Number(image.timeNs / 1000000n) / 1000).toFixed(1)} s`);
+}
+
+function paint(page: Page, canvas: HTMLCanvasElement, bitmap: ImageBitmap, stream: ImageStream): void {
+  if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) Object.assign(canvas, { width: bitmap.width, height: bitmap.height });
+  const context = canvas.getContext('2d');
+  if (!context) return;
+  context.drawImage(bitmap, 0, 0);
+  const image = page.live.images.get(stream);
+  if (stream === ImageStream.LEFT && page.settings.get().showFeatures && image) paintFeatures(page, context, image);
+}
+
+function paintFeatures(page: Page, context: CanvasRenderingContext2D, image: ImageEvent): void {
+  const { features } = page.live;
+  if (!features) return;
+  const factor = context.canvas.width / Math.max(1, image.fullSize[0]);
+  context.lineWidth = Math.max(1, context.canvas.width / 400);
+  features.inlier.forEach((inlier, i) => {
+    const at = (list: readonly number[], k: number): number => (list[2 * i + k] ?? 0) * factor;
+    const [x, y] = [at(features.currentPx, 0), at(features.currentPx, 1)];
+    context.strokeStyle = inlier ? INLIER : OUTLIER;
+    context.beginPath();
+    context.moveTo(at(features.keyPx, 0), at(features.keyPx, 1));
+    context.lineTo(x, y);
+    context.stroke();
+    context.strokeRect(x - 1.5 * context.lineWidth, y - 1.5 * context.lineWidth, 3 * context.lineWidth, 3 * context.lineWidth);
+  });
+}
+
+/** Reads a pixel's disparity back from its colour's place on the scale, and says what depth it means. */
+function depthUnderCursor(page: Page, canvas: HTMLCanvasElement, readout: HTMLElement): void {
+  const ramp = Array.from({ length: 256 }, (_, i) => rampColour('viridis', i / 255));
+  canvas.addEventListener('pointermove', (event) => {
+    const box = canvas.getBoundingClientRect();
+    const x = Math.floor(((event.clientX - box.left) / box.width) * canvas.width);
+    const y = Math.floor(((event.clientY - box.top) / box.height) * canvas.height);
+    const image = page.live.images.get(ImageStream.DISPARITY);
+    const pixel = canvas.getContext('2d', { willReadFrequently: true })?.getImageData(x, y, 1, 1).data;
+    if (!pixel || !image || !page.live.camera) return;
+    let best = 0;
+    let least = Infinity;
+    ramp.forEach(([r, g, b], i) => {
+      const away = (r - (pixel[0] ?? 0)) ** 2 + (g - (pixel[1] ?? 0)) ** 2 + (b - (pixel[2] ?? 0)) ** 2;
+      if (away < least) [least, best] = [away, i];
+    });
+    const px = image.scale[0] + (best / 255) * (image.scale[1] - image.scale[0]);
+    const depth = (page.live.camera.focalPx * page.live.camera.baselineM) / Math.max(px, 1e-3);
+    setText(readout, least > 2500 || px < 0.5 ? 'no match' : `≈ ${px.toFixed(1)} px, ${depth.toFixed(2)} m`);
+  });
+  canvas.addEventListener('pointerleave', () => setText(readout, ''));
+}
+
+function disparityScale(page: Page): HTMLElement {
+  const band = h('div', { class: 'ramp' });
+  band.style.background = `linear-gradient(90deg, ${Array.from({ length: 11 }, (_, i) => cssColour(rampColour('viridis', i / 10))).join(', ')})`;
+  const low = h('span', {});
+  const high = h('span', {});
+  const element = h('div', { class: 'disparity-scale', hidden: true }, band, h('div', { class: 'ramp-ends' }, low, high));
+  page.live.imageChanged.on((stream) => {
+    const image = stream === ImageStream.DISPARITY ? page.live.images.get(stream) : undefined;
+    if (!image) return;
+    element.hidden = false;
+    const ft = (page.live.camera?.focalPx ?? 0) * (page.live.camera?.baselineM ?? 0);
+    setText(low, `${image.scale[0].toFixed(0)} px, far`);
+    setText(high, ft > 0 ? `${image.scale[1].toFixed(0)} px, ${(ft / Math.max(image.scale[1], 1e-3)).toFixed(2)} m` : `${image.scale[1].toFixed(0)} px`);
+  });
+  return element;
+}

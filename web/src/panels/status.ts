@@ -1,0 +1,92 @@
+// How the session is doing: state, rates, sizes, stage times, and warnings in words.
+
+import { TrackingState } from '../gen/flogmap/v1/map_pb';
+import type { Status } from '../gen/flogmap/v1/stream_pb';
+import { lengthOf } from '../geometry';
+import type { Page } from '../page';
+import { h, setText } from '../ui/dom';
+import { icon } from '../ui/icons';
+import { section } from '../ui/controls';
+
+export const TRACKING_WORDS: Record<TrackingState, string> = {
+  [TrackingState.INITIALISING]: 'starting', [TrackingState.OK]: 'good', [TrackingState.WEAK]: 'weak', [TrackingState.LOST]: 'lost',
+};
+
+export function formatBytes(bytes: number): string {
+  const units = ['B', 'KiB', 'MiB', 'GiB'];
+  const power = bytes > 0 ? Math.min(3, Math.floor(Math.log2(bytes) / 10)) : 0;
+  const value = bytes / 1024 ** power;
+  return `${value >= 100 || power === 0 ? Math.round(value) : value.toFixed(1)} ${units[power]}`;
+}
+
+export function statusPanel(page: Page, charts: Node): HTMLElement {
+  const warnings = h('ul', { class: 'warnings' });
+  const facts = h('dl', { class: 'facts' });
+  const stages = h('div', { class: 'stages' });
+  let received = { bytes: 0, at: performance.now(), rate: 0 };
+  const show = (): void => {
+    const now = performance.now();
+    if (now - received.at > 900) {
+      const bytes = page.connection.receivedBytes;
+      received = { bytes, at: now, rate: ((bytes - received.bytes) * 1000) / (now - received.at) };
+    }
+    setFacts(facts, factsOf(page, received.rate));
+    showStages(stages, page.live.status);
+    const words = warningsOf(page);
+    warnings.replaceChildren(...words.map((text) => h('li', {}, icon('warning'), h('span', {}, text))));
+    warnings.hidden = words.length === 0;
+  };
+  page.live.statusChanged.on(show);
+  page.live.poseChanged.on(show);
+  setInterval(show, 1000);
+  show();
+  return section('Status', 'status', warnings, facts, stages, charts);
+}
+
+/** The server's warnings, and why tracking is not good. */
+export function warningsOf(page: Page): string[] {
+  const { status, pose } = page.live;
+  const tracking = pose && (pose.state === TrackingState.LOST || pose.state === TrackingState.WEAK)
+    ? [`Tracking ${TRACKING_WORDS[pose.state]}${pose.reason ? `: ${pose.reason}` : ''}.${pose.state === TrackingState.LOST ? ' Point the camera back at something it has seen.' : ''}`]
+    : [];
+  return [...tracking, ...(status?.warnings ?? [])];
+}
+
+function factsOf(page: Page, bytesPerSecond: number): readonly (readonly [string, string])[] {
+  const { status, pose, tiles, trajectory, rev } = page.live;
+  const metres = lengthOf(trajectory.flatMap((point) => (point.pose ? [point.pose] : [])));
+  const alignment = status?.alignment ? [['Heights from', status.alignment] as const] : [];
+  return [
+    ['Tracking', pose ? `${TRACKING_WORDS[pose.state]}, ${pose.inliers} inliers` : '–'],
+    ['Frames', status ? `${status.framesPerS.toFixed(1)} /s, ${status.frames} in all` : '–'],
+    ['Mapped views', status ? `${status.mappedViews}${status.loops > 0n ? `, ${status.loops} loops` : ''}` : '–'],
+    ['Lost, dropped', status ? `${status.lost}, ${status.droppedFrames + status.skippedFrames}` : '–'],
+    ['Path', `${metres.toFixed(1)} m, ${trajectory.length} poses`],
+    ['Map on server', status ? `${status.tiles} tiles, ${formatBytes(Number(status.mapBytes))}` : '–'],
+    ['Map in page', `${tiles.count} tiles, ${formatBytes(tiles.bytes)}`],
+    ['Received', `${formatBytes(bytesPerSecond)}/s, revision ${rev}`],
+    ...alignment,
+    ['Viewers', status ? String(status.viewers) : '–'],
+    ['Server', page.live.serverVersion || '–'],
+  ];
+}
+
+function setFacts(list: HTMLElement, facts: readonly (readonly [string, string])[]): void {
+  while (list.children.length > 2 * facts.length) list.lastElementChild?.remove();
+  facts.forEach(([name, value], i) => {
+    if (!list.children[2 * i]) list.append(h('dt', {}), h('dd', {}));
+    setText(list.children[2 * i] as Element, name);
+    setText(list.children[2 * i + 1] as Element, value);
+  });
+}
+
+function showStages(element: HTMLElement, status: Status | null): void {
+  const stages = status?.stages ?? [];
+  element.hidden = stages.length === 0;
+  const longest = Math.max(1, ...stages.map((stage) => stage.p95Ms));
+  element.replaceChildren(...stages.map((stage) => {
+    const fill = h('span', { class: 'bar-fill' });
+    fill.style.width = `${(100 * stage.medianMs) / longest}%`;
+    return h('div', { class: 'bar stage', title: `95 % below ${stage.p95Ms.toFixed(1)} ms` }, h('b', {}, stage.stage), h('span', { class: 'bar-track' }, fill), h('span', { class: 'bar-value' }, `${stage.medianMs.toFixed(1)} ms`));
+  }));
+}

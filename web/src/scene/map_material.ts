@@ -1,0 +1,166 @@
+// The colours of the map, computed on the graphics card from evidence, rules and palette. The rules are rules.ts's.
+
+import { Color, DataTexture, GLSL3, NearestFilter, RGBAFormat, ShaderMaterial, UnsignedByteType, type DataArrayTexture } from 'three';
+import type { MapInfo } from '../gen/flogmap/v1/map_pb';
+import { classColours, layerColour, rampTexels, type Rgb, type Theme } from '../palette';
+import { CONFLICT_MARK, OPERATORS, RULES_GLSL, seenFromConfidence, STYLES } from '../rules';
+import { layerSetting, type Settings } from '../settings';
+
+export const MAX_LAYERS = 16;
+
+/** One set of uniforms, shared by the materials of all pages and by the ground behind the tiles. */
+export interface MapUniforms {
+  [name: string]: { value: unknown };
+}
+
+const floats = (): number[] => new Array<number>(MAX_LAYERS).fill(0);
+
+export function mapUniforms(): MapUniforms {
+  const ramp = new DataTexture(rampTexels('cividis'), 256, 1, RGBAFormat, UnsignedByteType);
+  ramp.minFilter = ramp.magFilter = NearestFilter;
+  return {
+    uStyle: { value: 0 }, uOperators: { value: 0 }, uLayers: { value: 0 }, uThreshold: { value: 0.3 }, uConflictMark: { value: CONFLICT_MARK },
+    uClasses: { value: false }, uByHeight: { value: false }, uMarkConflict: { value: true }, uRamp: { value: ramp },
+    uWeights: { value: floats() }, uSeenFrom: { value: floats() }, uLayerColours: { value: Array.from({ length: MAX_LAYERS }, () => new Color()) },
+    uUnknown: { value: new Color() }, uFree: { value: new Color() }, uOccupied: { value: new Color() }, uConflict: { value: new Color() },
+    uHatch: { value: new Color() }, uPixelRatio: { value: 1 }, uOnly: { value: -1 }, uHeight: { value: 0 },
+  };
+}
+
+// Values for the shader as they are written to the screen: no conversion on the way.
+const put = (uniform: { value: unknown } | undefined, rgb: Rgb): void => {
+  (uniform?.value as Color).setRGB(rgb[0] / 255, rgb[1] / 255, rgb[2] / 255, '');
+};
+
+const set = (uniforms: MapUniforms, name: string, value: unknown): void => {
+  const uniform = uniforms[name];
+  if (uniform) uniform.value = value;
+};
+
+/** Writes the person's choices and the map's constants into the uniforms. */
+export function applySettings(uniforms: MapUniforms, settings: Settings, theme: Theme, info: MapInfo | null): void {
+  const layers = info?.layers.slice(0, MAX_LAYERS) ?? [];
+  set(uniforms, 'uStyle', STYLES.indexOf(settings.style));
+  set(uniforms, 'uOperators', OPERATORS.indexOf(settings.operators));
+  set(uniforms, 'uLayers', layers.length);
+  set(uniforms, 'uThreshold', settings.threshold);
+  set(uniforms, 'uClasses', settings.classes);
+  set(uniforms, 'uByHeight', settings.colourByHeight);
+  set(uniforms, 'uMarkConflict', settings.markConflict);
+  const padded = (values: number[]): number[] => [...values, ...floats()].slice(0, MAX_LAYERS);
+  set(uniforms, 'uWeights', padded(layers.map(({ id }) => (layerSetting(settings, id).visible ? layerSetting(settings, id).opacity : 0))));
+  set(uniforms, 'uSeenFrom', padded(layers.map((layer) => seenFromConfidence(info?.minRays ?? 8, layer.fullConfidenceRays))));
+  layers.forEach((_, i) => {
+    const colours = uniforms['uLayerColours']?.value as Color[];
+    put({ value: colours[i] }, layerColour(i, layers.length, theme));
+  });
+  applyColours(uniforms, settings, theme);
+}
+
+function applyColours(uniforms: MapUniforms, settings: Settings, theme: Theme): void {
+  const colours = classColours(settings.palette, theme);
+  put(uniforms['uUnknown'], colours.unknown);
+  put(uniforms['uFree'], colours.free);
+  put(uniforms['uOccupied'], colours.occupied);
+  put(uniforms['uConflict'], colours.conflict);
+  put(uniforms['uHatch'], hatchColour(colours.unknown, theme));
+  const ramp = uniforms['uRamp']?.value as DataTexture;
+  ramp.image.data?.set(rampTexels(settings.palette));
+  ramp.needsUpdate = true;
+}
+
+/** The lines on the unknown: a little lighter on dark, a little darker on light. */
+export const hatchColour = (unknown: Rgb, theme: Theme): Rgb =>
+  unknown.map((c) => (theme === 'dark' ? c + (255 - c) * 0.13 : c * 0.88)) as unknown as Rgb;
+
+const COMMON = /* glsl */ `
+precision highp float;
+uniform vec3 uUnknown; uniform vec3 uHatch; uniform float uPixelRatio;
+vec3 unknownColour() {  // diagonal lines, one in eight pixels
+  float at = mod(gl_FragCoord.x + gl_FragCoord.y, 8.0 * uPixelRatio);
+  return at < uPixelRatio ? uHatch : uUnknown;
+}
+`;
+
+const FRAGMENT = /* glsl */ `
+precision highp sampler2DArray;
+${COMMON}
+${RULES_GLSL}
+uniform sampler2DArray uPlanes;
+uniform sampler2D uRamp;
+uniform int uLayers;
+uniform int uOnly;  // this layer alone, or -1 for all
+uniform float uWeights[${MAX_LAYERS}];
+uniform float uSeenFrom[${MAX_LAYERS}];
+uniform vec3 uLayerColours[${MAX_LAYERS}];
+uniform vec3 uFree; uniform vec3 uOccupied; uniform vec3 uConflict;
+uniform float uThreshold; uniform float uConflictMark;
+uniform bool uClasses; uniform bool uByHeight; uniform bool uMarkConflict;
+in vec2 vCell;
+flat in float vSlot;
+out vec4 colour;
+
+vec3 conflictHatch(vec3 under) {  // a lattice, so that it cannot be taken for the unknown
+  float a = mod(gl_FragCoord.x - gl_FragCoord.y, 6.0 * uPixelRatio);
+  float b = mod(gl_FragCoord.x + gl_FragCoord.y, 6.0 * uPixelRatio);
+  return a < 1.5 * uPixelRatio || b < 1.5 * uPixelRatio ? uConflict : under;
+}
+
+void main() {
+  ivec2 cell = clamp(ivec2(vCell), ivec2(0), ivec2(63));
+  float best = -1.0;
+  float conflict = 0.0;
+  bool seen = false;
+  bool obstacle = false;
+  int from = -1;
+  for (int k = 0; k < ${MAX_LAYERS}; ++k) {
+    if (k >= uLayers) break;
+    if (uWeights[k] <= 0.0 || (uOnly >= 0 && k != uOnly)) continue;
+    vec4 evidence = texelFetch(uPlanes, ivec3(cell, int(vSlot + 0.5) * uLayers + k), 0);
+    bool here = evidence.b >= uSeenFrom[k];
+    seen = seen || here;
+    float value = uWeights[k] * styleValue(evidence);
+    if (value > best) { best = value; from = k; }
+    obstacle = obstacle || ((here || uStyle == 2) && uWeights[k] * classValue(evidence) >= uThreshold);
+    conflict = max(conflict, conflictValue(evidence));
+  }
+  bool covers = seen || (uStyle == 2 && from >= 0);
+  if (uOnly >= 0 && !seen) discard;
+  vec3 high = uByHeight && from >= 0 ? uLayerColours[max(from, 0)] : uOccupied;
+  vec3 shown = uClasses ? (obstacle ? high : uFree)
+    : uByHeight ? mix(uFree, high, clamp(best, 0.0, 1.0))
+    : texelFetch(uRamp, ivec2(int(clamp(best, 0.0, 1.0) * 255.0 + 0.5), 0), 0).rgb;
+  if (!covers) shown = unknownColour();
+  else if (!seen && mod(gl_FragCoord.x + gl_FragCoord.y, 8.0 * uPixelRatio) < uPixelRatio) shown = mix(shown, uUnknown, 0.55);
+  if (uMarkConflict && conflict >= uConflictMark) shown = conflictHatch(shown);
+  colour = vec4(shown, 1.0);
+}
+`;
+
+const VERTEX = /* glsl */ `
+in vec4 tile;  // lower left corner x, y; side [m]; slot
+uniform float uHeight;
+out vec2 vCell;
+flat out float vSlot;
+void main() {  // coarser tiles lie a little lower, so that finer ones cover them
+  vCell = position.xy * 64.0;
+  vSlot = tile.w;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(tile.xy + position.xy * tile.z, uHeight - 1e-4 * tile.z, 1.0);
+}
+`;
+
+/** Paints the tiles of one page. */
+export function tileMaterial(uniforms: MapUniforms, page: DataArrayTexture): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { ...uniforms, uPlanes: { value: page } },
+  });
+}
+
+/** Paints what no tile covers: unknown, over the whole screen. */
+export function groundMaterial(uniforms: MapUniforms): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3, depthTest: false, depthWrite: false, uniforms,
+    vertexShader: 'void main() { gl_Position = vec4(position.xy * 2.0 - 1.0, 0.999, 1.0); }',
+    fragmentShader: `${COMMON} out vec4 colour; void main() { colour = vec4(unknownColour(), 1.0); }`,
+  });
+}
