@@ -34,13 +34,12 @@ flogmap_target(map_export
     export/exported_file.cpp
     export/map_export.cpp
     export/map_files.cpp
-    export/map_raster.cpp
     export/octomap_map.cpp
     export/path_picture.cpp
     export/picture_file.cpp
     export/png_map.cpp
     export/ros_map.cpp
     export/trajectory_text.cpp
-  PUBLIC map_store
+  PUBLIC map_store flog
   PRIVATE flogmap_opencv ${FLOGMAP_OCTOMAP} ${FLOGMAP_OCTOMATH})
 target_include_directories(map_export SYSTEM PRIVATE ${FLOGMAP_OCTOMAP_INCLUDE})

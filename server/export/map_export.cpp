@@ -21,13 +21,8 @@ constexpr std::array<std::pair<std::string_view, ExportFormat>, 7> kFormats{{{"r
                                                                              {"kitti", ExportFormat::kitti}}};
 constexpr const char* kBinary = "application/octet-stream";
 
-std::vector<ExportedFile> png_files(const StoredMap& map, const ExportOptions& options,
-                                    const std::string& stem) {
-  return png_map(map, seen_window(map), options.layer, options.operators, stem);
-}
-
 void write_png(const StoredMap& map, const std::filesystem::path& path, const ExportOptions& options) {
-  const auto files = png_files(map, options, "map");
+  const auto files = png_map(snapshot_of(map), options.layer, options.rules, "map");
   write_file(path, files[0].bytes);
   write_file(std::filesystem::path(path).replace_extension(".pgw"), files[1].bytes);
 }
@@ -46,15 +41,16 @@ ExportFormat export_format(std::string_view name) {
 ExportedFile export_bytes(ExportFormat format, const StoredMap& map, const ExportOptions& options) {
   switch (format) {
     case ExportFormat::ros:
-      return {"map.tar", "application/x-tar", tar_of(ros_map(map, options.operators, options.ros_mode))};
+      return {"map.tar", "application/x-tar",
+              tar_of(ros_map(snapshot_of(map), options.rules, options.ros_mode))};
     case ExportFormat::png:
-      return png_files(map, options, "map")[0];
+      return png_map(snapshot_of(map), options.layer, options.rules, "map")[0];
     case ExportFormat::ply:
       return {"map.ply", kBinary, ply_of(cell_cloud(map))};
     case ExportFormat::pcd:
       return {"map.pcd", kBinary, pcd_of(cell_cloud(map))};
     case ExportFormat::bt:
-      return {"map.bt", kBinary, octomap_of(map, options.operators)};
+      return {"map.bt", kBinary, octomap_of(map, options.rules.operators)};
     case ExportFormat::tum:
       return {"trajectory.tum", "text/plain", tum_of(map.trajectory)};
     case ExportFormat::kitti:
@@ -66,7 +62,7 @@ ExportedFile export_bytes(ExportFormat format, const StoredMap& map, const Expor
 void export_map(ExportFormat format, const StoredMap& map, const std::filesystem::path& path,
                 const ExportOptions& options) {
   if (format == ExportFormat::ros) {
-    write_files(path, ros_map(map, options.operators, options.ros_mode));
+    write_files(path, ros_map(snapshot_of(map), options.rules, options.ros_mode));
   } else if (format == ExportFormat::png) {
     write_png(map, path, options);
   } else {

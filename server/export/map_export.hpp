@@ -1,13 +1,16 @@
 // A stored map in the formats of other programs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "mapping/flog/map_rules.hpp"
 #include "server/export/exported_file.hpp"
-#include "server/export/map_raster.hpp"
 #include "server/export/ros_map.hpp"
+#include "server/map_store.hpp"
 
 namespace flogmap {
 
@@ -17,8 +20,8 @@ enum class ExportFormat : std::uint8_t { ros, png, ply, pcd, bt, tum, kitti };
 ExportFormat export_format(std::string_view name);
 
 struct ExportOptions {
-  Operators operators = Operators::algebraic;
-  LayerChoice layer;  // png: one layer instead of all fused
+  Rules rules;               // what pictures show; `operators` also decides what is occupied in a .bt
+  std::optional<int> layer;  // png: one layer instead of all fused
   RosMode ros_mode = RosMode::trinary;
 };
 

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "mapping/flog/map_picture.hpp"
+#include "mapping/flog/map_planes.hpp"
 #include "server/export/exported_file.hpp"
-#include "server/export/map_raster.hpp"
+#include "server/export/picture_area.hpp"
 
 namespace flogmap {
 namespace {
@@ -17,7 +19,7 @@ constexpr int kWantedPx = 1400;      // the longer side, if the map is small
 constexpr double kMarginM = 0.25;    // around what was seen
 constexpr double kTickEveryM = 0.5;  // along the path
 constexpr double kTickPx = 13;
-constexpr double kMaxPathCells = 8000;  // a path that strays farther is cut off
+constexpr double kMaxPathCells = 5000;  // from the origin; a path that strays farther is cut off
 constexpr int kLegendPx = 64;
 constexpr int kLegendWidthPx = 900;  // below that the words do not fit
 
@@ -31,14 +33,14 @@ const cv::Scalar kInk{40, 40, 40};
 
 /// A piece of paper for the map, and where things lie on it.
 struct Sheet {
-  MapWindow window;
+  MapArea area;
   double cell_size_m = 0;
   int factor = 1;  // pixels along a cell
   cv::Mat pixels;
 
   [[nodiscard]] cv::Point2d px(double x_m, double y_m) const {
-    const double column = x_m / cell_size_m - window.first.x;
-    const double row = window.first.y + window.height - y_m / cell_size_m;
+    const double column = x_m / cell_size_m - area.low.x;
+    const double row = area.high.y - y_m / cell_size_m;
     return {column * factor, row * factor};
   }
 };
@@ -48,42 +50,48 @@ bool has_pose(const TrajectoryEntry& entry) {
 }
 
 /// What was seen and where the camera was, as far as a picture of it makes sense.
-MapWindow window_of(const StoredMap& map) {
+MapArea area_of(const MapSnapshot& map, const std::vector<TrajectoryEntry>& trajectory) {
   const double a = map.info.grid.cell_size_m;
-  const MapWindow seen = seen_window(map);
-  double left = seen.first.x, right = left + seen.width;
-  double low = seen.first.y, high = low + seen.height;
-  for (const TrajectoryEntry& entry : map.trajectory) {
-    const double x = std::floor(entry.world_from_camera.translation().x() / a);
-    const double y = std::floor(entry.world_from_camera.translation().y() / a);
-    const double width = std::max(right, x + 1) - std::min(left, x);
-    const double height = std::max(high, y + 1) - std::min(low, y);
-    if (!has_pose(entry) || std::max(width, height) > kMaxPathCells) continue;
-    left = std::min(left, x);
-    low = std::min(low, y);
-    right = left + width;
-    high = low + height;
+  MapArea area = picture_area(map);
+  for (const TrajectoryEntry& entry : trajectory) {
+    const Eigen::Vector3d at = entry.world_from_camera.translation() / a;
+    if (!has_pose(entry) || at.head<2>().cwiseAbs().maxCoeff() > kMaxPathCells) continue;
+    const CellIndex cell{static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y()))};
+    area.low = {std::min(area.low.x, cell.x), std::min(area.low.y, cell.y)};
+    area.high = {std::max(area.high.x, cell.x + 1), std::max(area.high.y, cell.y + 1)};
   }
   const int margin = static_cast<int>(std::ceil(kMarginM / a));
-  return {{static_cast<int>(left) - margin, static_cast<int>(low) - margin},
-          static_cast<int>(right - left) + 2 * margin,
-          static_cast<int>(high - low) + 2 * margin};
+  return {{area.low.x - margin, area.low.y - margin}, {area.high.x + margin, area.high.y + margin}};
 }
 
-Sheet draw_map(const StoredMap& map, Operators operators) {
-  Sheet sheet{window_of(map), map.info.grid.cell_size_m, 1, {}};
-  const int longer = std::max(sheet.window.width, sheet.window.height);
-  sheet.factor = std::clamp(kWantedPx / longer, 1, 16);
-  const Image<float> values = value_raster(map, sheet.window, {}, operators);
-  const Image<CellClass> classes = class_raster(map, sheet.window, {}, operators);
-  cv::Mat cells(values.height, values.width, CV_8UC3);
-  for (int y = 0; y < values.height; ++y) {
-    for (int x = 0; x < values.width; ++x) {
-      const cv::Vec3b base = classes.at(x, y) == CellClass::unknown ? kPaper : kFree;
-      cells.at<cv::Vec3b>(y, x) = base * (1 - values.at(x, y));
+/// Columns that were seen in any layer.
+Image<std::uint8_t> seen_mask(const MapSnapshot& map, const MapArea& area) {
+  Image<std::uint8_t> seen(static_cast<int>(area.width()), static_cast<int>(area.height()));
+  for (int k = 0; k < map.info.grid.num_layers(); ++k) {
+    const Image<std::uint8_t> layer = trinary_picture(map, area, k, {}).grey;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (layer.pixels[i] != kTrinaryUnknown) seen.pixels[i] = 1;
     }
   }
-  cv::resize(cells, sheet.pixels, {}, sheet.factor, sheet.factor, cv::INTER_NEAREST);
+  return seen;
+}
+
+Sheet draw_map(const StoredMap& stored, Operators operators) {
+  const MapSnapshot map = snapshot_of(stored);
+  Rules rules;
+  rules.operators = operators;
+  const MapPicture picture = map_picture(map, area_of(map, stored.trajectory), {}, rules);
+  const Image<std::uint8_t> seen = seen_mask(map, picture.area);
+  cv::Mat cells(seen.height, seen.width, CV_8UC3);
+  for (int y = 0; y < seen.height; ++y) {
+    for (int x = 0; x < seen.width; ++x) {
+      const cv::Vec3b base = seen.at(x, y) != 0 ? kFree : kPaper;
+      cells.at<cv::Vec3b>(y, x) = base * (picture.grey.at(x, y) / 255.0);
+    }
+  }
+  const int factor = std::clamp(kWantedPx / std::max(seen.width, seen.height), 1, 16);
+  Sheet sheet{picture.area, picture.cell_size_m, factor, {}};
+  cv::resize(cells, sheet.pixels, {}, factor, factor, cv::INTER_NEAREST);
   return sheet;
 }
 
@@ -171,7 +179,7 @@ double scale_bar_m(double width_m) {
 
 cv::Mat draw_legend(const Sheet& sheet, int width_px) {
   cv::Mat legend(kLegendPx, width_px, CV_8UC3, cv::Scalar(255, 255, 255));
-  const double bar_m = scale_bar_m(sheet.window.width * sheet.cell_size_m);
+  const double bar_m = scale_bar_m(static_cast<double>(sheet.area.width()) * sheet.cell_size_m);
   const int bar_px = static_cast<int>(std::lround(bar_m / sheet.cell_size_m * sheet.factor));
   cv::rectangle(legend, {12, 14}, {12 + bar_px, 19}, kInk, cv::FILLED);
   write(legend, shortest_text(bar_m) + " m", 12 + bar_px + 8, 21);

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "mapping/flog/map_rules.hpp"
+#include "mapping/tile_update.hpp"
 #include "server/export/exported_file.hpp"
-#include "server/export/map_raster.hpp"
 
 namespace flogmap {
 
 /// `stem`.png, grey = 255 (1 - M), and the world file `stem`.pgw that tells any GIS where it lies, in metres.
-std::vector<ExportedFile> png_map(const StoredMap& map, const MapWindow& window, LayerChoice layer,
-                                  Operators operators, const std::string& stem);
+/// One layer, or all fused. Throws std::invalid_argument if the map has no such layer.
+std::vector<ExportedFile> png_map(const MapSnapshot& map, std::optional<int> layer, const Rules& rules,
+                                  const std::string& stem);
 
 }  // namespace flogmap

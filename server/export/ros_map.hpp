@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "mapping/flog/map_area.hpp"
+#include "mapping/flog/map_rules.hpp"
 #include "server/export/exported_file.hpp"
-#include "server/export/map_raster.hpp"
 
 namespace flogmap {
 
@@ -14,11 +17,11 @@ enum class RosMode : std::uint8_t {
   scale,    // PNG: 255 (1 - M), transparent where unknown
 };
 
-/// `stem`.pgm (or .png) and `stem`.yaml of one layer or of all fused, cut to `window`.
-std::vector<ExportedFile> ros_files(const StoredMap& map, const MapWindow& window, LayerChoice layer,
-                                    Operators operators, RosMode mode, const std::string& stem);
+/// `stem`.pgm (or .png) and `stem`.yaml of one layer or of all fused.
+std::vector<ExportedFile> ros_files(const MapSnapshot& map, const MapArea& area, std::optional<int> layer,
+                                    const Rules& rules, RosMode mode, const std::string& stem);
 
 /// map.* (fused) and layer_<k>.* of every layer, all cut to what was seen.
-std::vector<ExportedFile> ros_map(const StoredMap& map, Operators operators, RosMode mode);
+std::vector<ExportedFile> ros_map(const MapSnapshot& map, const Rules& rules, RosMode mode);
 
 }  // namespace flogmap
