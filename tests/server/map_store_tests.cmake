@@ -7,3 +7,12 @@ flogmap_test(map_store_tests
     map_store_support.cpp
     map_store_writer_test.cpp
   LINK map_store)
+
+flogmap_test(map_export_tests
+  SOURCES
+    export_cloud_test.cpp
+    export_folder_test.cpp
+    export_picture_test.cpp
+    map_store_support.cpp
+  LINK map_export flogmap_opencv ${FLOGMAP_OCTOMAP} ${FLOGMAP_OCTOMATH})
+target_include_directories(map_export_tests SYSTEM PRIVATE ${FLOGMAP_OCTOMAP_INCLUDE})
