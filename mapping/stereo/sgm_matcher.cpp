@@ -21,7 +21,7 @@ constexpr int kLeastJump = 12;        // P2 across the strongest edge of the pic
 constexpr double kJumpEdge = 0.1;     // P2 = kJump / (1 + kJumpEdge * step of brightness)
 constexpr int kMaxLeftRightPx = 2;
 constexpr int kWarmUpRows = 16;       // paths start this far outside a band
-constexpr int kLargestBandPair = 256; // rows
+constexpr int kLargestBandPair = 160;  // rows
 
 /// Rows that are matched independently. They depend on the height alone, never on the number of threads.
 struct Band {
@@ -52,10 +52,11 @@ std::array<std::uint8_t, 256> jump_by_brightness_step() {
 struct Workspace {
   std::vector<std::uint8_t> hamming;   // the last three volume rows of Hamming sums
   std::vector<std::uint8_t> costs;     // volume of the band with its warm-up rows
-  std::vector<std::uint8_t> upward;    // volume of the band: costs of the paths from below and from the right
-  std::vector<std::uint8_t> downward;  // volume row: of the paths from above and from the left
-  std::vector<std::uint8_t> vertical, vertical_min;
-  std::vector<std::uint8_t> jump_from_left, jump_from_before;
+  std::vector<std::uint8_t> upward;    // volume of the band: costs of the paths that come from below
+  std::vector<std::uint8_t> vertical;  // volume row: of the paths of the row before
+  std::vector<std::uint8_t> vertical_min;
+  std::vector<std::uint8_t> along;  // volume row: of the paths along the row
+  std::vector<std::uint8_t> jumps;
 };
 
 class SgmMatcher : public DisparityMatcher {
@@ -84,24 +85,32 @@ class SgmMatcher : public DisparityMatcher {
 
  private:
   void match_band(const Image<std::uint8_t>& left, const Band& band, Workspace& work, Image<float>& disparity) {
-    const std::size_t row_bytes = static_cast<std::size_t>(left.width) * kernels_.stride;
-    work.upward.resize(row_bytes * (band.end - band.begin));
-    work.downward.resize(row_bytes);
     compute_costs(left, band, work);
-    start_paths(left.width, work);
-    for (int y = band.warm_end - 1; y >= band.begin; --y) {
-      const bool warming_up = y >= band.end;
-      advance_paths(left, band, y, y + 1, false, work,
-                    warming_up ? work.downward.data() : work.upward.data() + (y - band.begin) * row_bytes);
-    }
+    paths_from_below(left, band, work);
     start_paths(left.width, work);
     WinnersBuffer winners(left.width, kernels_.stride);
+    work.along.resize(work.vertical.size());
     for (int y = band.warm_begin; y < band.end; ++y) {
-      advance_paths(left, band, y, y - 1, true, work, work.downward.data());
+      const PathRow path{work.vertical.data(), work.vertical_min.data()};
+      advance(left, band, y, y - 1, work, path, path);
       if (y < band.begin) continue;
-      kernels_.winners_row(work.upward.data() + (y - band.begin) * row_bytes, work.downward.data(), left.width,
+      const std::size_t row = static_cast<std::size_t>(y - band.begin) * work.vertical.size();
+      run_along(left, band, y, work);
+      kernels_.winners_row(work.along.data(), work.vertical.data(), work.upward.data() + row, left.width,
                            padding_.data(), winners.row());
       row_disparities(winners.row(), left.width, range_, kMaxLeftRightPx, disparity.row(y));
+    }
+  }
+
+  void paths_from_below(const Image<std::uint8_t>& left, const Band& band, Workspace& work) const {
+    start_paths(left.width, work);
+    work.upward.resize(work.vertical.size() * (band.end - band.begin));
+    PathRow before{work.vertical.data(), work.vertical_min.data()};
+    for (int y = band.warm_end - 1; y >= band.begin; --y) {
+      PathRow here = before;
+      if (y < band.end) here.costs = work.upward.data() + (y - band.begin) * work.vertical.size();
+      advance(left, band, y, y + 1, work, before, here);
+      before = here;
     }
   }
 
@@ -127,22 +136,29 @@ class SgmMatcher : public DisparityMatcher {
   void start_paths(int width, Workspace& work) const {
     work.vertical.assign(static_cast<std::size_t>(width) * kernels_.stride, 0);
     work.vertical_min.assign(width, 0);
-    work.jump_from_left.assign(width + 1, kLeastJump);
-    work.jump_from_before.assign(width, kLeastJump);
+    work.jumps.assign(width + 1, kLeastJump);
   }
 
-  /// Paths along row y and into it from row `before`; their summed costs.
-  void advance_paths(const Image<std::uint8_t>& left, const Band& band, int y, int before, bool to_the_right,
-                     Workspace& work, std::uint8_t* sums) const {
-    const std::uint8_t* here = left.row(y);
-    const std::uint8_t* there = left.row(std::clamp(before, 0, left.height - 1));
-    for (int x = 1; x < left.width; ++x) work.jump_from_left[x] = jump_[std::abs(here[x] - here[x - 1])];
-    for (int x = 0; x < left.width; ++x) work.jump_from_before[x] = jump_[std::abs(here[x] - there[x])];
-    const std::size_t row_bytes = static_cast<std::size_t>(left.width) * kernels_.stride;
-    const PathRow path{kSmallStep, work.jump_from_left.data(), work.jump_from_before.data(), work.vertical.data(),
-                       work.vertical_min.data()};
-    kernels_.paths_row(work.costs.data() + (y - band.warm_begin) * row_bytes, left.width, to_the_right,
-                       padding_.data(), path, sums);
+  [[nodiscard]] const std::uint8_t* costs_of(const Band& band, int y, const Workspace& work) const {
+    return work.costs.data() + static_cast<std::size_t>(y - band.warm_begin) * work.vertical.size();
+  }
+
+  /// Vertical paths, from row `y_before` into row y.
+  void advance(const Image<std::uint8_t>& left, const Band& band, int y, int y_before, Workspace& work,
+               const PathRow& before, const PathRow& here) const {
+    const std::uint8_t* a = left.row(y);
+    const std::uint8_t* b = left.row(std::clamp(y_before, 0, left.height - 1));
+    for (int x = 0; x < left.width; ++x) work.jumps[x] = jump_[std::abs(a[x] - b[x])];
+    kernels_.path_down(costs_of(band, y, work), left.width, padding_.data(), {kSmallStep, work.jumps.data()},
+                       before, here);
+  }
+
+  /// Paths along row y, both ways.
+  void run_along(const Image<std::uint8_t>& left, const Band& band, int y, Workspace& work) const {
+    const std::uint8_t* a = left.row(y);
+    for (int x = 1; x < left.width; ++x) work.jumps[x] = jump_[std::abs(a[x] - a[x - 1])];
+    kernels_.paths_along(costs_of(band, y, work), left.width, padding_.data(), {kSmallStep, work.jumps.data()},
+                         work.along.data());
   }
 
   DisparityRange range_;

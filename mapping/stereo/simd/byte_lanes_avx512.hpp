@@ -40,11 +40,14 @@ inline Bytes shift_lanes_up(Bytes a, Bytes before) {
 inline Bytes shift_lanes_down(Bytes a, Bytes after) {
   return {_mm512_alignr_epi8(_mm512_alignr_epi64(after.v, a.v, 2), a.v, 1)};
 }
-inline std::uint8_t reduce_min(Bytes a) {
+inline std::uint8_t first_byte(Bytes a) {
+  return static_cast<std::uint8_t>(_mm_cvtsi128_si32(_mm512_castsi512_si128(a.v)));
+}
+inline Bytes min_everywhere(Bytes a) {
   const __m256i halves = _mm256_min_epu8(_mm512_castsi512_si256(a.v), _mm512_extracti64x4_epi64(a.v, 1));
   const __m128i fours = _mm_min_epu8(_mm256_castsi256_si128(halves), _mm256_extracti128_si256(halves, 1));
   const __m128i pairs = _mm_min_epu8(fours, _mm_srli_epi16(fours, 8));
-  return static_cast<std::uint8_t>(_mm_cvtsi128_si32(_mm_minpos_epu16(pairs)));
+  return {_mm512_broadcastb_epi8(_mm_minpos_epu16(pairs))};
 }
 inline int first_equal(Bytes a, Bytes value) {
   const std::uint64_t equal = _mm512_cmpeq_epi8_mask(a.v, value.v);

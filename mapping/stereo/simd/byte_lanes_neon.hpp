@@ -34,7 +34,8 @@ Bytes shift_bits_right(Bytes a) {
 inline Bytes popcount(Bytes a) { return {vcntq_u8(a.v)}; }
 inline Bytes shift_lanes_up(Bytes a, Bytes before) { return {vextq_u8(before.v, a.v, 15)}; }
 inline Bytes shift_lanes_down(Bytes a, Bytes after) { return {vextq_u8(a.v, after.v, 1)}; }
-inline std::uint8_t reduce_min(Bytes a) { return vminvq_u8(a.v); }
+inline std::uint8_t first_byte(Bytes a) { return vgetq_lane_u8(a.v, 0); }
+inline Bytes min_everywhere(Bytes a) { return splat(vminvq_u8(a.v)); }
 inline int first_equal(Bytes a, Bytes value) {
   // Four bits per lane remain after narrowing: arm has no movemask.
   const uint8x8_t nibbles = vshrn_n_u16(vreinterpretq_u16_u8(vceqq_u8(a.v, value.v)), 4);

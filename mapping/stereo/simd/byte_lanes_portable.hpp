@@ -89,10 +89,12 @@ inline Bytes shift_lanes_down(Bytes a, Bytes after) {
   for (int i = 0; i + 1 < Bytes::kLanes; ++i) out.lane[i] = a.lane[i + 1];
   return out;
 }
-inline std::uint8_t reduce_min(Bytes a) {
+inline std::uint8_t first_byte(Bytes a) { return a.lane[0]; }
+/// The least lane, in every lane.
+inline Bytes min_everywhere(Bytes a) {
   std::uint8_t least = a.lane[0];
   for (const std::uint8_t lane : a.lane) least = lane < least ? lane : least;
-  return least;
+  return splat(least);
 }
 /// Number of the first lane equal to `value`; -1 if there is none.
 inline int first_equal(Bytes a, Bytes value) {

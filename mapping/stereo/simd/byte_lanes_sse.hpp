@@ -54,16 +54,16 @@ inline Bytes shift_lanes_up(Bytes a, Bytes before) {
 inline Bytes shift_lanes_down(Bytes a, Bytes after) {
   return {_mm_or_si128(_mm_srli_si128(a.v, 1), _mm_slli_si128(after.v, 15))};
 }
-inline std::uint8_t reduce_min(Bytes a) {
+inline std::uint8_t first_byte(Bytes a) { return static_cast<std::uint8_t>(_mm_cvtsi128_si32(a.v)); }
+inline Bytes min_everywhere(Bytes a) {
 #if defined(__SSE4_1__)
   const __m128i pairs = _mm_min_epu8(a.v, _mm_srli_epi16(a.v, 8));
-  return static_cast<std::uint8_t>(_mm_cvtsi128_si32(_mm_minpos_epu16(pairs)));
+  return {_mm_shuffle_epi8(_mm_minpos_epu16(pairs), _mm_setzero_si128())};
 #else
-  __m128i m = _mm_min_epu8(a.v, _mm_srli_si128(a.v, 8));
-  m = _mm_min_epu8(m, _mm_srli_si128(m, 4));
-  m = _mm_min_epu8(m, _mm_srli_si128(m, 2));
-  m = _mm_min_epu8(m, _mm_srli_si128(m, 1));
-  return static_cast<std::uint8_t>(_mm_cvtsi128_si32(m));
+  __m128i m = _mm_min_epu8(a.v, _mm_shuffle_epi32(a.v, _MM_SHUFFLE(1, 0, 3, 2)));
+  m = _mm_min_epu8(m, _mm_shuffle_epi32(m, _MM_SHUFFLE(2, 3, 0, 1)));
+  m = _mm_min_epu8(m, _mm_or_si128(_mm_srli_epi32(m, 16), _mm_slli_epi32(m, 16)));
+  return {_mm_min_epu8(m, _mm_or_si128(_mm_srli_epi16(m, 8), _mm_slli_epi16(m, 8)))};
 #endif
 }
 inline int first_equal(Bytes a, Bytes value) {

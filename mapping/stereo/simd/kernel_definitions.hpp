@@ -10,6 +10,9 @@ namespace {
 
 constexpr int kLanes = Bytes::kLanes;
 
+// Registers travel between these functions; a call that is not inlined sends them through memory.
+#define FLOGMAP_INLINE [[gnu::always_inline]] inline
+
 /// One pixel of a volume: kVectors registers, lane = disparity index.
 template <int kVectors>
 struct Lanes {
@@ -17,36 +20,36 @@ struct Lanes {
 };
 
 template <int kVectors>
-Lanes<kVectors> load_lanes(const std::uint8_t* from) {
+FLOGMAP_INLINE Lanes<kVectors> load_lanes(const std::uint8_t* from) {
   Lanes<kVectors> out;
   for (int i = 0; i < kVectors; ++i) out.v[i] = load(from + i * kLanes);
   return out;
 }
 
 template <int kVectors>
-void store_lanes(std::uint8_t* to, const Lanes<kVectors>& a) {
+FLOGMAP_INLINE void store_lanes(std::uint8_t* to, const Lanes<kVectors>& a) {
   for (int i = 0; i < kVectors; ++i) store(to + i * kLanes, a.v[i]);
 }
 
+/// The least byte, in every lane.
 template <int kVectors>
-std::uint8_t least(const Lanes<kVectors>& a) {
+FLOGMAP_INLINE Bytes least_everywhere(const Lanes<kVectors>& a) {
   Bytes m = a.v[0];
   for (int i = 1; i < kVectors; ++i) m = min(m, a.v[i]);
-  return reduce_min(m);
+  return min_everywhere(m);
 }
 
 template <int kVectors>
-int first_lane_equal(const Lanes<kVectors>& a, std::uint8_t value) {
-  const Bytes all = splat(value);
+FLOGMAP_INLINE int first_lane_equal(const Lanes<kVectors>& a, Bytes value) {
   for (int i = 0; i < kVectors; ++i) {
-    if (const int lane = first_equal(a.v[i], all); lane >= 0) return i * kLanes + lane;
+    if (const int lane = first_equal(a.v[i], value); lane >= 0) return i * kLanes + lane;
   }
   return 0;
 }
 
 /// Every lane takes the one below it; lane 0 takes `first`.
 template <int kVectors>
-Lanes<kVectors> from_below(const Lanes<kVectors>& a, Bytes first) {
+FLOGMAP_INLINE Lanes<kVectors> from_below(const Lanes<kVectors>& a, Bytes first) {
   Lanes<kVectors> out;
   for (int i = 0; i < kVectors; ++i) out.v[i] = shift_lanes_up(a.v[i], i == 0 ? first : a.v[i - 1]);
   return out;
@@ -54,7 +57,7 @@ Lanes<kVectors> from_below(const Lanes<kVectors>& a, Bytes first) {
 
 /// Every lane takes the one above it; the last takes `last`.
 template <int kVectors>
-Lanes<kVectors> from_above(const Lanes<kVectors>& a, Bytes last) {
+FLOGMAP_INLINE Lanes<kVectors> from_above(const Lanes<kVectors>& a, Bytes last) {
   Lanes<kVectors> out;
   for (int i = 0; i < kVectors; ++i) {
     out.v[i] = shift_lanes_down(a.v[i], i + 1 == kVectors ? last : a.v[i + 1]);
@@ -97,7 +100,7 @@ void census_row(const std::uint8_t* const* rows, int width, std::uint8_t* const*
 // ---- costs --------------------------------------------------------------------------------------------
 
 template <int kVectors>
-Lanes<kVectors> hamming(const CensusRow& left, const CensusRow& right, int width, int x) {
+FLOGMAP_INLINE Lanes<kVectors> hamming(const CensusRow& left, const CensusRow& right, int width, int x) {
   Lanes<kVectors> out;
   const int first = width - 1 - x;
   for (int i = 0; i < kVectors; ++i) out.v[i] = splat(0);
@@ -135,45 +138,80 @@ void window_cost(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_
 
 // ---- semi-global paths --------------------------------------------------------------------------------
 
+/// The costs of a path at one pixel, and the least of them in every lane.
+template <int kVectors>
+struct Path {
+  Lanes<kVectors> L;
+  Bytes min_L;
+};
+
+template <int kVectors>
+FLOGMAP_INLINE Path<kVectors> start_of_path() {
+  Path<kVectors> out;
+  for (int i = 0; i < kVectors; ++i) out.L.v[i] = splat(0);
+  out.min_L = splat(0);
+  return out;
+}
+
 /// One step along a path:  L(d) = C(d) + min(L'(d), L'(d-1) + P1, L'(d+1) + P1, min L' + P2) - min L'.
 /// With costs up to 27 and P2 up to 90, L stays below 118; padding lanes are 255 and never win.
 template <int kVectors>
-Lanes<kVectors> path_step(const Lanes<kVectors>& path, std::uint8_t path_min, const std::uint8_t* costs,
-                          const std::uint8_t* padding, Bytes small_step, std::uint8_t jump) {
-  Lanes<kVectors> stepped, out;
-  for (int i = 0; i < kVectors; ++i) stepped.v[i] = add_saturated(path.v[i], small_step);
+FLOGMAP_INLINE Path<kVectors> path_step(const Path<kVectors>& path, const Lanes<kVectors>& C, const Lanes<kVectors>& padding,
+                         Bytes P1, Bytes P2) {
+  Lanes<kVectors> stepped;
+  for (int i = 0; i < kVectors; ++i) stepped.v[i] = add_saturated(path.L.v[i], P1);
   const Lanes<kVectors> below = from_below(stepped, splat(255)), above = from_above(stepped, splat(255));
-  const Bytes jumped = splat(static_cast<std::uint8_t>(path_min + jump)), base = splat(path_min);
+  const Bytes jumped = add(path.min_L, P2);
+  Path<kVectors> out;
   for (int i = 0; i < kVectors; ++i) {
-    const Bytes cheapest = min(min(path.v[i], jumped), min(below.v[i], above.v[i]));
-    const Bytes L = add(load(costs + i * kLanes), subtract(cheapest, base));
-    out.v[i] = bit_or(L, load(padding + i * kLanes));
+    const Bytes cheapest = min(min(path.L.v[i], jumped), min(below.v[i], above.v[i]));
+    out.L.v[i] = bit_or(add(C.v[i], subtract(cheapest, path.min_L)), padding.v[i]);
   }
+  out.min_L = least_everywhere(out.L);
   return out;
 }
 
 template <int kVectors>
-void paths_row(const std::uint8_t* costs, int width, bool to_the_right, const std::uint8_t* padding,
-               const PathRow& path, std::uint8_t* sums) {
+void path_down(const std::uint8_t* costs, int width, const std::uint8_t* padding_lanes,
+               const PathPenalties& penalties, const PathRow& before, const PathRow& here) {
+  const Lanes<kVectors> padding = load_lanes<kVectors>(padding_lanes);
+  const Bytes P1 = splat(penalties.small_step);
+  for (int x = 0; x < width; ++x) {
+    const int at = x * kVectors * kLanes;
+    const Path<kVectors> path{load_lanes<kVectors>(before.costs + at), splat(before.minima[x])};
+    const Path<kVectors> next =
+        path_step(path, load_lanes<kVectors>(costs + at), padding, P1, splat(penalties.jumps[x]));
+    store_lanes(here.costs + at, next.L);
+    here.minima[x] = first_byte(next.min_L);
+  }
+}
+
+template <int kVectors>
+FLOGMAP_INLINE void add_lanes(std::uint8_t* to, const Lanes<kVectors>& a) {
+  for (int i = 0; i < kVectors; ++i) store(to + i * kLanes, add_saturated(load(to + i * kLanes), a.v[i]));
+}
+
+/// Both directions at once: every step waits for the one before, so two chains take the time of one.
+template <int kVectors>
+void paths_along(const std::uint8_t* costs, int width, const std::uint8_t* padding_lanes,
+                 const PathPenalties& penalties, std::uint8_t* sums) {
   constexpr int kStride = kVectors * kLanes;
-  const Bytes small_step = splat(path.small_step);
-  Lanes<kVectors> along;
-  for (int i = 0; i < kVectors; ++i) along.v[i] = splat(0);
-  std::uint8_t along_min = 0;
-  for (int i = 0; i < width; ++i) {
-    const int x = to_the_right ? i : width - 1 - i;
-    const std::uint8_t* C = costs + x * kStride;
-    const std::uint8_t jump = path.jump_from_left[to_the_right ? x : x + 1];
-    along = path_step<kVectors>(along, along_min, C, padding, small_step, jump);
-    along_min = least(along);
-    std::uint8_t* vertical = path.vertical + x * kStride;
-    const Lanes<kVectors> down =
-        path_step<kVectors>(load_lanes<kVectors>(vertical), path.vertical_min[x], C, padding, small_step,
-                            path.jump_from_before[x]);
-    store_lanes(vertical, down);
-    path.vertical_min[x] = least(down);
-    for (int k = 0; k < kVectors; ++k) {
-      store(sums + x * kStride + k * kLanes, add_saturated(along.v[k], down.v[k]));
+  const Lanes<kVectors> padding = load_lanes<kVectors>(padding_lanes);
+  const Bytes P1 = splat(penalties.small_step);
+  Path<kVectors> right = start_of_path<kVectors>(), left = right;
+  for (int x = 0; x < width; ++x) {
+    const int y = width - 1 - x;  // where the path to the left is
+    right = path_step(right, load_lanes<kVectors>(costs + x * kStride), padding, P1, splat(penalties.jumps[x]));
+    left = path_step(left, load_lanes<kVectors>(costs + y * kStride), padding, P1, splat(penalties.jumps[y + 1]));
+    if (x < y) {  // first to come here
+      store_lanes(sums + x * kStride, right.L);
+      store_lanes(sums + y * kStride, left.L);
+    } else if (x == y) {
+      store_lanes(sums + x * kStride, right.L);
+      add_lanes(sums + x * kStride, left.L);
+    } else {
+      add_lanes(sums + x * kStride, right.L);
+      add_lanes(sums + y * kStride, left.L);
     }
   }
 }
@@ -185,14 +223,14 @@ template <int kVectors>
 struct RightWinners {
   Lanes<kVectors> cost, index, own_index;
 
-  RightWinners() {
+  FLOGMAP_INLINE RightWinners() {
     std::uint8_t lane[kVectors * kLanes];
     for (int i = 0; i < kVectors * kLanes; ++i) lane[i] = static_cast<std::uint8_t>(i);
     own_index = load_lanes<kVectors>(lane);
     for (int i = 0; i < kVectors; ++i) cost.v[i] = splat(255), index.v[i] = splat(0);
   }
 
-  void add_pixel(const Lanes<kVectors>& S) {
+  FLOGMAP_INLINE void add_pixel(const Lanes<kVectors>& S) {
     cost = from_below(cost, splat(255));
     index = from_below(index, splat(0));
     for (int i = 0; i < kVectors; ++i) {
@@ -204,8 +242,8 @@ struct RightWinners {
 };
 
 template <int kVectors>
-void winners_row(const std::uint8_t* a, const std::uint8_t* b, int width, const std::uint8_t* padding,
-                 const WinnersRow& winners) {
+void winners_row(const std::uint8_t* along, const std::uint8_t* down, const std::uint8_t* up, int width,
+                 const std::uint8_t* padding, const WinnersRow& winners) {
   constexpr int kStride = kVectors * kLanes;
   RightWinners<kVectors> right;
   std::uint8_t costs[1 + kStride + 1] = {};
@@ -213,15 +251,16 @@ void winners_row(const std::uint8_t* a, const std::uint8_t* b, int width, const 
     Lanes<kVectors> S;
     for (int i = 0; i < kVectors; ++i) {
       const int at = x * kStride + i * kLanes;
-      S.v[i] = bit_or(average(load(a + at), load(b + at)), load(padding + i * kLanes));
+      const Bytes vertical = add_saturated(load(down + at), load(up + at));
+      S.v[i] = bit_or(average(load(along + at), vertical), load(padding + i * kLanes));
     }
     right.add_pixel(S);
     store_lanes(winners.right + (width - 1 - x), right.index);  // later pixels overwrite all but the final lanes
-    const std::uint8_t cost = least(S);
+    const Bytes cost = least_everywhere(S);
     const int best = first_lane_equal(S, cost);
     store_lanes(costs + 1, S);
     winners.best[x] = static_cast<std::uint8_t>(best);
-    winners.cost[x] = cost;
+    winners.cost[x] = first_byte(cost);
     winners.before[x] = costs[best];
     winners.after[x] = costs[best + 2];
   }
@@ -231,8 +270,14 @@ void winners_row(const std::uint8_t* a, const std::uint8_t* b, int width, const 
 
 template <int kVectors>
 MatchKernels kernels_of_size(const char* name) {
-  return {name,        kVectors * kLanes,    census_row, hamming_row<kVectors>,
-          window_cost, paths_row<kVectors>, winners_row<kVectors>};
+  return {name,
+          kVectors * kLanes,
+          census_row,
+          hamming_row<kVectors>,
+          window_cost,
+          path_down<kVectors>,
+          paths_along<kVectors>,
+          winners_row<kVectors>};
 }
 
 MatchKernels kernels_for(const char* name, int num_disparities) {

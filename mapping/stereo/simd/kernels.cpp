@@ -26,7 +26,12 @@ KernelMakers available_kernels() {
 
 MatchKernels match_kernels(int num_disparities) {
   const KernelMakers all = available_kernels();
-  return all.maker[all.count - 1](num_disparities);
+  MatchKernels best = all.maker[all.count - 1](num_disparities);
+  for (int i = all.count - 2; i > 0; --i) {  // 0 is the plain reference
+    const MatchKernels narrower = all.maker[i](num_disparities);
+    if (narrower.stride < best.stride) best = narrower;
+  }
+  return best;
 }
 
 }  // namespace flogmap

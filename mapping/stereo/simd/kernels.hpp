@@ -26,13 +26,16 @@ struct WinnersRow {
   std::uint8_t* right;   // best index seen from the right pixel; width + stride entries
 };
 
-/// Costs of changing the disparity from one pixel to the next along a path.
+/// Costs of changing the disparity from one pixel of a path to the next: P1 by one, P2 by more.
+struct PathPenalties {
+  std::uint8_t small_step;    // P1
+  const std::uint8_t* jumps;  // P2 per pixel; see the kernels for which neighbour
+};
+
+/// Path costs of one row and their minima per pixel; continued by the next row.
 struct PathRow {
-  std::uint8_t small_step;               // P1: by one
-  const std::uint8_t* jump_from_left;    // P2 between pixel x-1 and x; width + 1 entries
-  const std::uint8_t* jump_from_before;  // P2 between the row before and this one
-  std::uint8_t* vertical;                // volume row: path costs of the row before; overwritten
-  std::uint8_t* vertical_min;            // their minima per pixel
+  std::uint8_t* costs;   // volume row
+  std::uint8_t* minima;  // per pixel
 };
 
 struct MatchKernels {
@@ -51,17 +54,23 @@ struct MatchKernels {
   void (*window_cost)(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, int num_bytes,
                       std::uint8_t* cost);
 
-  /// Semi-global costs of two paths, summed: along the row (to the right, or to the left) and from the row
-  /// before. `padding`: stride bytes, 0xFF in padding lanes, else 0.
-  void (*paths_row)(const std::uint8_t* costs, int width, bool to_the_right, const std::uint8_t* padding,
-                    const PathRow& path, std::uint8_t* sums);
+  /// Semi-global path costs from the row before into this one. `jumps[x]`: between the two rows.
+  /// `padding`: stride bytes, 0xFF in padding lanes, else 0. `here` may be `before`.
+  void (*path_down)(const std::uint8_t* costs, int width, const std::uint8_t* padding,
+                    const PathPenalties& penalties, const PathRow& before, const PathRow& here);
 
-  /// Winners of the mean of two volume rows.
-  void (*winners_row)(const std::uint8_t* a, const std::uint8_t* b, int width, const std::uint8_t* padding,
-                      const WinnersRow& winners);
+  /// Semi-global path costs along the row, to the right and to the left, summed. `jumps[x]`: between
+  /// pixels x-1 and x; width + 1 entries.
+  void (*paths_along)(const std::uint8_t* costs, int width, const std::uint8_t* padding,
+                      const PathPenalties& penalties, std::uint8_t* sums);
+
+  /// Winners of the mean of `along` and `down + up`.
+  void (*winners_row)(const std::uint8_t* along, const std::uint8_t* down, const std::uint8_t* up, int width,
+                      const std::uint8_t* padding, const WinnersRow& winners);
 };
 
-/// The fastest kernels that this processor runs, for 1 <= num_disparities <= 256.
+/// The kernels to use on this processor, for 1 <= num_disparities <= 256: those that pad the volumes least,
+/// for memory is what limits them, and of these the widest.
 MatchKernels match_kernels(int num_disparities);
 
 /// All kernels that this processor runs, plain C++ first: for tests.
