@@ -1,69 +1,63 @@
-// Which way is up, and how high: the first pose of the world, so that layers mean heights. FLOG.md section 1.
+// Where the first camera pose stands in the world: z up, floor at z = 0.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "camera/stereo_camera.hpp"
+#include "mapping/odometry/ground_plane.hpp"
+#include "mapping/odometry/surface_patches.hpp"
 #include "mapping/view.hpp"
 
 namespace flogmap {
 
-enum class AlignMode : std::uint8_t {
-  automatic,  // gravity where a sensor tells it, else ground, else none
-  none,       // the first optical axis is level and the first camera stands at z = 0
-  gravity,
-  ground,
+struct LevelOptions {
+  GroundOptions ground;
+  double max_wait_s = 5;          // for a floor to come into view
+  int enough_patches = 300;       // on the floor: decided at once
+  int least_patches = 60;         // decided when the wait is over
+  double max_tilt_sigma_rad = 0.006;  // a third of a degree
 };
 
-struct LevelStartOptions {
-  AlignMode mode = AlignMode::automatic;
-  int min_frames = 10;   // the floor is looked for in so many frames at least ...
-  int max_frames = 100;  // ... and given up after so many
-  double max_tilt_rad = 0.9;  // of the first camera against the level one; a steeper "floor" is a wall
+/// The world as the start knows it.
+struct Level {
+  SE3 world_from_odometry = SE3::Identity();
+  bool tilt_known = false;    // else the first optical axis was taken to be horizontal
+  bool height_known = false;  // else the first camera was put at z = 0
+  std::string how;            // in words, for the log
 };
 
-/// Watches the first frames until the world is decided: origin on the floor below the first camera, z up, the
-/// first optical axis above the x axis. Pure: the same frames give the same answer.
+/// The world whose z axis is `up` (unit length, odometry frame), whose x axis is the first camera's optical axis
+/// laid flat, and in which that camera stands at (0, 0, height_m).
+[[nodiscard]] SE3 level_from_up(const Eigen::Vector3d& up_in_odometry, double height_m);
+
+/// The world of a camera that is held level: its z (forward) is x, its x (right) is -y, its y (down) is -z.
+[[nodiscard]] SE3 level_of_camera();
+
+/// Watches the first frames until it knows. With a measured up (gravity) only the height is sought.
 class LevelStart {
  public:
-  /// `up_in_camera`: unit vector against gravity in the rectified left camera of the first frame, if known.
-  LevelStart(const LevelStartOptions& options, const StereoCamera& camera,
-             const std::optional<Eigen::Vector3d>& up_in_camera);
+  LevelStart(const StereoCamera& camera, const LevelOptions& options,
+             std::optional<Eigen::Vector3d> up_in_first_camera = std::nullopt);
 
-  /// world_from_odometry once it is decided; call with every tracked frame until then.
-  std::optional<SE3> add(const DisparityImage& disparity, const SE3& odometry_from_camera);
+  /// Takes a tracked frame in. Nothing while undecided: after `max_wait_s` it is always decided.
+  [[nodiscard]] std::optional<Level> add(std::int64_t timestamp_ns, const DisparityImage& disparity,
+                                         const SE3& odometry_from_camera);
 
-  /// In words: "gravity and ground", "ground", "gravity", "none"; with the reason where a wish failed.
-  [[nodiscard]] const std::string& decided_by() const { return decided_by_; }
+  /// What is known by now; for a source that ends early.
+  [[nodiscard]] Level decide_now() const;
 
  private:
-  /// A small piece of surface, in the odometry's frame.
-  struct Surfel {
-    Eigen::Vector3d point;
-    Eigen::Vector3d normal;  // towards the camera
-  };
-  struct Plane {
-    Eigen::Vector3d up;
-    double height_m = 0;  // of the plane along `up`; the odometry's origin is at 0
-  };
+  [[nodiscard]] std::optional<GroundPlane> ground() const;
 
-  void collect(const DisparityImage& disparity, const SE3& odometry_from_camera);
-  [[nodiscard]] std::optional<Eigen::Vector3d> dominant_up() const;
-  [[nodiscard]] std::optional<Plane> find_floor(const Eigen::Vector3d& up, bool refine_up) const;
-  [[nodiscard]] std::optional<SE3> decide();
-
-  LevelStartOptions options_;
   StereoCamera camera_;
-  std::optional<Eigen::Vector3d> up_;  // by gravity
-  std::vector<Surfel> surfels_;
-  int num_frames_ = 0;
-  std::string decided_by_ = "undecided";
+  LevelOptions options_;
+  std::optional<Eigen::Vector3d> measured_up_;
+  std::vector<SurfacePatch> patches_;  // odometry frame
+  std::optional<std::int64_t> first_ns_;
 };
-
-/// The level world whose z axis is `up` and whose floor is at `floor_height_m` along it; see LevelStart.
-SE3 world_from_level(const Eigen::Vector3d& up_in_odometry, double floor_height_m);
 
 }  // namespace flogmap
