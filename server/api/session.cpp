@@ -1,0 +1,53 @@
+// GET /session; POST /session:pause :resume :reset
+#include <nlohmann/json.hpp>
+
+#include "server/api/resources.hpp"
+
+namespace flogmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+ApiResponse session_response(ServerState& state) {
+  const StatusReport& report = state.status;
+  Json json = {{"state", name_of(state.session_state())},
+               {"reason", state.control.reason()},
+               {"source", state.control.source()},
+               {"live", state.control.live()},
+               {"epoch", state.live ? Json(state.live->epoch()) : Json(nullptr)},
+               {"rev", state.live ? Json(state.live->revision()) : Json(nullptr)},
+               {"frames_per_s", report.frames_per_s},
+               {"frames", report.frames},
+               {"tracked", report.tracked},
+               {"lost", report.lost},
+               {"mapped_views", report.mapped_views},
+               {"loops", report.loops},
+               {"dropped_frames", report.dropped_frames},
+               {"skipped_frames", report.skipped_frames},
+               {"alignment", report.alignment},
+               {"viewers", state.num_viewers},
+               {"warnings", report.warnings}};
+  return json_response(json.dump());
+}
+
+ApiAnswer get_session(const ApiRequest&, ServerState& state) { return session_response(state); }
+
+ApiAnswer answer_to(const ControlResult& result, ServerState& state) {
+  if (result.outcome == ControlOutcome::illegal) return problem(409, "illegal-transition", result.detail);
+  return session_response(state);
+}
+
+ApiAnswer pause(const ApiRequest&, ServerState& state) { return answer_to(state.control.pause(), state); }
+ApiAnswer resume(const ApiRequest&, ServerState& state) { return answer_to(state.control.resume(), state); }
+ApiAnswer reset(const ApiRequest&, ServerState& state) { return answer_to(state.control.reset(), state); }
+
+}  // namespace
+
+std::vector<Route> session_routes() {
+  return {{Method::get, "/api/v1/session", Role::view, get_session},
+          {Method::post, "/api/v1/session:pause", Role::control, pause},
+          {Method::post, "/api/v1/session:resume", Role::control, resume},
+          {Method::post, "/api/v1/session:reset", Role::control, reset}};
+}
+
+}  // namespace flogmap

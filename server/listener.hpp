@@ -1,0 +1,37 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <optional>
+
+#include "server/session_context.hpp"
+
+namespace flogmap {
+
+/// Accepts connections, within the limits.
+class Listener {
+ public:
+  /// Binds. Throws std::runtime_error in one line if that fails or the certificate cannot be used.
+  Listener(boost::asio::io_context& network, const ServeOptions& options, SessionContext context,
+           ConnectionLimit& limit);
+
+  void start();
+  void stop();
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+
+ private:
+  void accept();
+  void welcome(boost::asio::ip::tcp::socket socket);
+  void turn_away(boost::asio::ip::tcp::socket socket);
+
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer pause_;
+  std::optional<boost::asio::ssl::context> tls_;
+  SessionContext context_;
+  ConnectionLimit& limit_;
+  std::uint16_t port_ = 0;
+};
+
+}  // namespace flogmap

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace flogmap {
+
+/// What Prometheus is told of the network side. Counters are cheap: an atomic addition.
+class Metrics {
+ public:
+  Metrics();
+  ~Metrics();
+  Metrics(const Metrics&) = delete;
+  Metrics& operator=(const Metrics&) = delete;
+
+  void count_response(int status, std::size_t bytes);
+  void count_stream_message(std::size_t bytes);
+  void count_received(std::size_t bytes);
+  void count_refused_connection();
+  void count_closed_stream(std::uint16_t code);
+  void observe_query_s(double seconds);
+
+  /// A value as it is now: gauges of the map and the mapping are set right before they are read.
+  void set(const std::string& name, const std::string& help, double value);
+  void set_stage(const std::string& stage, const std::string& quantile, double seconds);
+
+  /// Prometheus text format 0.0.4.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  struct Families;
+  std::unique_ptr<Families> families_;
+};
+
+}  // namespace flogmap

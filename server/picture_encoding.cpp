@@ -1,0 +1,115 @@
+#include "server/picture_encoding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "server/palette.hpp"
+
+namespace flogmap {
+namespace {
+
+constexpr int kJpegQuality = 80;
+constexpr int kFastPng = 1;  // compression level of 9
+constexpr Rgb kNoDisparity{42, 42, 46};
+
+std::string to_string(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+
+/// As large as wanted, never larger than it is.
+cv::Mat fitted(const cv::Mat& picture, int max_width_px, int interpolation) {
+  if (max_width_px <= 0 || picture.cols <= max_width_px) return picture;
+  const int height = std::max(1, static_cast<int>(std::lround(picture.rows * max_width_px / double(picture.cols))));
+  cv::Mat out;
+  cv::resize(picture, out, cv::Size(max_width_px, height), 0, 0, interpolation);
+  return out;
+}
+
+EncodedPicture described(const cv::Mat& full, const cv::Mat& sent, PictureKey key, std::int64_t timestamp_ns) {
+  EncodedPicture picture;
+  picture.stream = key.stream;
+  picture.timestamp_ns = timestamp_ns;
+  picture.width_px = sent.cols;
+  picture.height_px = sent.rows;
+  picture.full_width_px = full.cols;
+  picture.full_height_px = full.rows;
+  return picture;
+}
+
+EncodedPicture encode_grey(const Image<std::uint8_t>& image, PictureKey key, std::int64_t timestamp_ns) {
+  const cv::Mat full(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
+  const cv::Mat sent = fitted(full, key.max_width_px, cv::INTER_AREA);
+  std::vector<std::uint8_t> file;
+  cv::imencode(".jpg", sent, file, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  EncodedPicture picture = described(full, sent, key, timestamp_ns);
+  picture.media_type = "image/jpeg";
+  picture.data = to_string(file);
+  return picture;
+}
+
+/// Ends of the colour scale: 0 and a round number of pixels that nearly all disparities stay below.
+double scale_end_px(const Image<float>& disparity) {
+  std::vector<float> valid;
+  for (std::size_t i = 0; i < disparity.size(); i += 7) {
+    if (std::isfinite(disparity.pixels[i])) valid.push_back(disparity.pixels[i]);
+  }
+  constexpr double kStep = 8;
+  if (valid.empty()) return kStep;
+  const auto high = valid.begin() + static_cast<std::ptrdiff_t>(valid.size() * 99 / 100);
+  std::nth_element(valid.begin(), high, valid.end());
+  return std::max(kStep, std::ceil(static_cast<double>(*high) / kStep) * kStep);
+}
+
+cv::Mat coloured(const cv::Mat& disparity, double scale_end) {
+  const PaletteTable& table = table_of(Palette::viridis);
+  const auto bgr = [](Rgb colour) { return cv::Vec3b(colour.b, colour.g, colour.r); };
+  cv::Mat out(disparity.rows, disparity.cols, CV_8UC3);
+  for (int y = 0; y < disparity.rows; ++y) {
+    const auto* from = disparity.ptr<float>(y);
+    auto* to = out.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < disparity.cols; ++x) {
+      const double value = 255.0 * static_cast<double>(from[x]) / scale_end;
+      to[x] = std::isfinite(from[x]) ? bgr(table[static_cast<int>(std::clamp(value, 0.0, 255.0))])
+                                     : bgr(kNoDisparity);
+    }
+  }
+  return out;
+}
+
+EncodedPicture encode_disparity(const Image<float>& image, PictureKey key, std::int64_t timestamp_ns) {
+  const cv::Mat full(image.height, image.width, CV_32F, const_cast<float*>(image.pixels.data()));
+  const cv::Mat sent = fitted(full, key.max_width_px, cv::INTER_NEAREST);
+  EncodedPicture picture = described(full, sent, key, timestamp_ns);
+  picture.scale_max_px = scale_end_px(image);
+  std::vector<std::uint8_t> file;
+  cv::imencode(".png", coloured(sent, picture.scale_max_px), file, {cv::IMWRITE_PNG_COMPRESSION, kFastPng});
+  picture.media_type = "image/png";
+  picture.data = to_string(file);
+  return picture;
+}
+
+}  // namespace
+
+std::optional<EncodedPicture> encode_picture(const PictureReport& report, PictureKey key) {
+  if (key.stream == ImageStream::disparity) {
+    if (!report.disparity || report.disparity->px.empty()) return std::nullopt;
+    return encode_disparity(report.disparity->px, key, report.timestamp_ns);
+  }
+  if (!report.frame) return std::nullopt;
+  const auto& image = key.stream == ImageStream::left ? report.frame->left : report.frame->right;
+  if (image.empty()) return std::nullopt;
+  return encode_grey(image, key, report.timestamp_ns);
+}
+
+std::string encode_png(int width_px, int height_px, int channels, const std::uint8_t* pixels) {
+  const cv::Mat rgb(height_px, width_px, CV_8UC(channels), const_cast<std::uint8_t*>(pixels));
+  cv::Mat bgr = rgb;
+  if (channels == 3) cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  if (channels == 4) cv::cvtColor(rgb, bgr, cv::COLOR_RGBA2BGRA);
+  std::vector<std::uint8_t> file;
+  cv::imencode(".png", bgr, file, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  return to_string(file);
+}
+
+}  // namespace flogmap

@@ -1,0 +1,112 @@
+#include "server/stream_protocol.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/access.hpp"
+#include "server/cell_inspection.hpp"
+
+namespace flogmap {
+namespace {
+
+StreamClose bad_frame(std::string reason) { return {kCloseBadFrame, std::move(reason)}; }
+
+}  // namespace
+
+StreamProtocol::StreamProtocol(ServerState& state, Role role, Time now)
+    : state_(state), role_(role), connected_at_(now), heard_at_(now), next_ping_(now + kPingInterval) {}
+
+std::optional<StreamClose> StreamProtocol::receive(std::string_view frame, Time now) {
+  heard(now);
+  state_.metrics.count_received(frame.size());
+  const auto message = decode_client_message(frame);
+  if (!message) return bad_frame("not a ClientMessage");
+  if (greeted_ == std::holds_alternative<Hello>(*message)) {
+    return bad_frame(greeted_ ? "Hello comes once" : "Hello comes first");
+  }
+  return std::visit([&](const auto& what) { return on(what, now); }, *message);
+}
+
+std::optional<StreamClose> StreamProtocol::on(const Hello& hello, Time) {
+  if (std::find(hello.versions.begin(), hello.versions.end(), kProtocolVersion) == hello.versions.end()) {
+    return StreamClose{kCloseUnknownVersion, "this server speaks version 1"};
+  }
+  greeted_ = true;
+  ServedMap& map = *state_.live;
+  const MapHeader header = map.header();
+  send_control(encode_welcome(header, {}, name_of(role_), state_.info.version));
+  if (hello.resume && hello.resume->epoch == map.epoch()) {
+    outbox_.resume(*hello.resume, map);
+  } else if (hello.resume && !hello.resume->epoch.empty()) {
+    send_control(encode_reset(header, "another map"));
+  }
+  outbox_.status(to_shared(encode_status(state_.status, state_.serving_status())));
+  outbox_.playback(to_shared(encode_playback(state_.control.playback())));
+  return std::nullopt;
+}
+
+std::optional<StreamClose> StreamProtocol::on(const Subscribe& subscribe, Time now) {
+  image_wishes_.clear();
+  for (const ImageRequest& request : subscribe.images) {
+    if (request.max_fps > 0) image_wishes_.push_back({request, now, -1});
+  }
+  wants_features_ = subscribe.features;
+  outbox_.subscribe(subscribe, *state_.live);
+  return std::nullopt;
+}
+
+std::optional<StreamClose> StreamProtocol::on(const Viewport& viewport, Time) {
+  outbox_.look_at(viewport, *state_.live);
+  return std::nullopt;
+}
+
+std::optional<StreamClose> StreamProtocol::on(const Ack& ack, Time now) {
+  if (outbox_.acknowledge(ack.bytes, now)) return std::nullopt;
+  return bad_frame("acknowledged more bytes than were sent");
+}
+
+std::optional<StreamClose> StreamProtocol::on(const Forget& forget, Time) {
+  outbox_.forget(forget.keys, *state_.live);
+  return std::nullopt;
+}
+
+std::optional<StreamClose> StreamProtocol::on(const InspectCell& inspect, Time) {
+  if (!has_cell(state_.live->board().info().grid, inspect.x_m, inspect.y_m)) {
+    return send_control(encode_problem("out-of-range", "no cell lies so far out"));
+  }
+  return send_control(encode_cell_column(inspect_cell(*state_.live, inspect.x_m, inspect.y_m)));
+}
+
+std::optional<StreamClose> StreamProtocol::on(const Ping& ping, Time) { return send_control(encode_pong(ping.nonce)); }
+
+std::optional<StreamClose> StreamProtocol::send_control(std::string message) {
+  if (outbox_.control(to_shared(std::move(message)))) return std::nullopt;
+  return StreamClose{kCloseTooSlow, "answers are not read"};
+}
+
+std::optional<StreamClose> StreamProtocol::check_deadlines(Time now) {
+  if (!greeted_ && now - connected_at_ >= kHelloDeadline) return StreamClose{kCloseNoHello, "no Hello within 5 s"};
+  if (outbox_.overdue(now)) return StreamClose{kCloseTooSlow, "nothing acknowledged for 30 s"};
+  if (now - heard_at_ >= kDeadAfter) return StreamClose{kCloseTooSlow, "not heard of for 45 s"};
+  return std::nullopt;
+}
+
+bool StreamProtocol::ping_due(Time now) {
+  if (now < next_ping_) return false;
+  next_ping_ = now + kPingInterval;
+  return true;
+}
+
+void StreamProtocol::reset(const std::string& reason) {
+  if (!greeted_) return;
+  send_control(encode_reset(state_.live->header(), reason));
+  outbox_.reset(*state_.live);
+}
+
+Bytes StreamProtocol::goodbye(const std::string& reason) {
+  Bytes message = to_shared(encode_goodbye(reason, 2));
+  outbox_.control(message);
+  return message;
+}
+
+}  // namespace flogmap

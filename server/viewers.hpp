@@ -1,0 +1,66 @@
+#pragma once
+
+#include <chrono>
+#include <compare>
+#include <set>
+#include <span>
+#include <string>
+
+#include "server/stream_protocol.hpp"
+
+namespace flogmap {
+
+/// One connected page, as the hub sees it.
+class Viewer {
+ public:
+  virtual ~Viewer() = default;
+  virtual StreamProtocol& protocol() = 0;
+  /// Sends what may be sent; called whenever something may have changed.
+  virtual void pump() = 0;
+  /// Says goodbye and closes with 1001.
+  virtual void dismiss(const std::string& reason) = 0;
+};
+
+/// A picture in the size that somebody wants.
+struct PictureKey {
+  ImageStream stream = ImageStream::left;
+  int max_width_px = 0;  // 0: full size
+  auto operator<=>(const PictureKey&) const = default;
+};
+
+/// Sizes are rounded down to a few, so that many pages share few pictures.
+PictureKey picture_key(const ImageRequest& request);
+
+/// All pages. Everything is said once and its bytes are shared.
+class Viewers {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  explicit Viewers(ServerState& state) : state_(state) {}
+
+  void join(Viewer& viewer);
+  void leave(Viewer& viewer);
+
+  void map_changed(std::span<const Slot> slots);
+  void map_reset(const std::string& reason);
+  void trajectory_rewritten(const std::string& reason);
+  void tracked();        // state.tracking is new
+  void status_changed();  // state.status or the session is
+  void playback_changed();
+  void dismiss_all(const std::string& reason);
+  void pump_all();
+
+  /// Sizes in which somebody wants the picture of this time now, and could take it.
+  [[nodiscard]] std::set<PictureKey> wanted_pictures(std::int64_t timestamp_ns, Time now);
+  /// Somebody has asked for pictures at all.
+  [[nodiscard]] bool any_picture_wish();
+  void deliver_picture(PictureKey key, std::int64_t timestamp_ns, const Bytes& message, Time now);
+
+  [[nodiscard]] std::size_t size() const { return viewers_.size(); }
+
+ private:
+  ServerState& state_;
+  std::set<Viewer*> viewers_;
+};
+
+}  // namespace flogmap
