@@ -191,7 +191,7 @@ export class Simulation {
 const newEpoch = (): string => `mock-${Math.random().toString(36).slice(2, 10)}`;
 
 /** world_from_camera: x right, y down, z along the heading. */
-function poseOf({ x, y, z, heading }: Stand): { x: number; y: number; z: number; qx: number; qy: number; qz: number; qw: number } {
+export function poseOf({ x, y, z, heading }: Stand): { x: number; y: number; z: number; qx: number; qy: number; qz: number; qw: number } {
   const half = (heading - Math.PI / 2) / 2; // turn about the world's z after tipping the optical axis to +y
   const tip = -Math.PI / 4; // half of -90 degrees about x
   const [c, s, ct, st] = [Math.cos(half), Math.sin(half), Math.cos(tip), Math.sin(tip)];

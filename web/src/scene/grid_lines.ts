@@ -35,7 +35,7 @@ export class GridLines {
   setInk(light: boolean): void {
     const { uInk, uStrength } = this.mesh.material.uniforms;
     if (uInk) (uInk.value as Color).setRGB(light ? 1 : 0, light ? 1 : 0, light ? 1 : 0, '');
-    if (uStrength) uStrength.value = light ? 0.16 : 0.17;
+    if (uStrength) uStrength.value = light ? 0.11 : 0.13;
   }
 
   update(view: Viewport, solid: boolean): void {

@@ -71,7 +71,7 @@ function applyColours(uniforms: MapUniforms, settings: Settings, theme: Theme): 
 
 /** The lines on the unknown: a little lighter on dark, a little darker on light. */
 export const hatchColour = (unknown: Rgb, theme: Theme): Rgb =>
-  unknown.map((c) => (theme === 'dark' ? c + (255 - c) * 0.13 : c * 0.88)) as unknown as Rgb;
+  unknown.map((c) => (theme === 'dark' ? c + (255 - c) * 0.1 : c * 0.91)) as unknown as Rgb;
 
 const COMMON = /* glsl */ `
 precision highp float;
