@@ -29,31 +29,34 @@ std::vector<Acceleration> read_start(const std::filesystem::path& csv) {
   return samples;
 }
 
-Eigen::Vector3d mean_until(const std::vector<Acceleration>& samples, double end_s) {
+/// Mean over [begin_s, end_s); nothing if there is no sample.
+std::optional<Eigen::Vector3d> mean(const std::vector<Acceleration>& samples, double begin_s, double end_s) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
   for (const Acceleration& sample : samples) {
-    if (sample.time_s > end_s) break;
+    if (sample.time_s < begin_s || sample.time_s >= end_s) continue;
     sum += sample.in_sensor;
     ++count;
   }
-  return sum / count;
+  if (count == 0) return std::nullopt;
+  return Eigen::Vector3d(sum / count);
 }
 
 }  // namespace
 
 std::optional<Eigen::Vector3d> resting_acceleration(const std::vector<Acceleration>& samples) {
-  constexpr double kFirstS = 0.5, kLongestS = 2.0, kRestingSpread = 1.0, kGravity = 9.81, kGravitySlack = 0.5;
-  if (samples.empty() || samples.back().time_s < kFirstS) return std::nullopt;
-  const Eigen::Vector3d first = mean_until(samples, kFirstS);
+  constexpr double kFirstS = 0.5, kLongestS = 2.0, kBlockS = 0.1;
+  constexpr double kRestingMs2 = 0.4, kGravityMs2 = 9.81, kGravitySlackMs2 = 0.5;
+  const auto first = mean(samples, 0, kFirstS);
+  if (!first || samples.back().time_s < kFirstS) return std::nullopt;
   double rest_until_s = 0;
-  for (const Acceleration& sample : samples) {
-    if (sample.time_s > kLongestS || (sample.in_sensor - first).norm() > kRestingSpread) break;
-    rest_until_s = sample.time_s;
+  for (; rest_until_s < kLongestS; rest_until_s += kBlockS) {  // block by block: motors shake single samples
+    const auto block = mean(samples, rest_until_s, rest_until_s + kBlockS);
+    if (!block || (*block - *first).norm() > kRestingMs2) break;
   }
-  const Eigen::Vector3d mean = mean_until(samples, rest_until_s);
-  if (rest_until_s < kFirstS || std::abs(mean.norm() - kGravity) > kGravitySlack) return std::nullopt;
-  return mean;
+  if (rest_until_s < kFirstS) return std::nullopt;
+  const auto resting = mean(samples, 0, rest_until_s);
+  return std::abs(resting->norm() - kGravityMs2) < kGravitySlackMs2 ? resting : std::nullopt;
 }
 
 std::optional<Eigen::Vector3d> inertial_up(const std::filesystem::path& imu_folder,

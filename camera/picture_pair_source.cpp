@@ -22,6 +22,17 @@ PicturePairSource::PicturePairSource(std::string spec, PicturePairList list, boo
     throw std::runtime_error(spec_ + ": no stereo pair" + (why.empty() ? "" : "; " + why));
   }
   find_picture_size();
+  if (list_.calibration) fit_calibration();
+}
+
+void PicturePairSource::fit_calibration() {
+  for (CameraIntrinsics* camera : {&list_.calibration->left, &list_.calibration->right}) {
+    if (camera->width_px == 0) camera->width_px = width_px_, camera->height_px = height_px_;
+    if (camera->width_px == width_px_ && camera->height_px == height_px_) continue;
+    throw std::runtime_error(spec_ + ": pictures are " + std::to_string(width_px_) + "x" +
+                             std::to_string(height_px_) + ", but " + list_.calibration->origin + " is for " +
+                             std::to_string(camera->width_px) + "x" + std::to_string(camera->height_px));
+  }
 }
 
 void PicturePairSource::find_picture_size() {

@@ -1,13 +1,14 @@
 #include "camera/source_spec.hpp"
 
 #include <array>
-#include <filesystem>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "camera/calibration/detect.hpp"
 #include "camera/euroc_source.hpp"
+#include "camera/images_source.hpp"
+#include "camera/kitti_source.hpp"
 #include "camera/simulated_source.hpp"
 #include "camera/simulation/scene_json.hpp"
 
@@ -25,6 +26,18 @@ std::unique_ptr<StereoSource> open_euroc(const SourceOptions& options, const std
   return open_pairs(options, list_euroc(where, options.calibration_file.empty()));
 }
 
+std::unique_ptr<StereoSource> open_kitti(const SourceOptions& options, const std::string& where) {
+  return open_pairs(options, list_kitti(where, options.calibration_file.empty()));
+}
+
+std::unique_ptr<StereoSource> open_images(const SourceOptions& options, const std::string& where) {
+  if (options.calibration_file.empty()) {
+    throw std::runtime_error("source '" + options.spec +
+                             "' carries no calibration: give one with --calibration FILE");
+  }
+  return open_pairs(options, list_images(where));
+}
+
 std::unique_ptr<StereoSource> open_simulated(const SourceOptions& options, const std::string& where) {
   return std::make_unique<SimulatedSource>(options.spec, load_scene(where), options.seed);
 }
@@ -36,6 +49,8 @@ struct Kind {
 
 constexpr std::array kKinds{
     Kind{"euroc", "DIR", open_euroc},
+    Kind{"kitti", "DIR", open_kitti},
+    Kind{"images", "LEFT_GLOB,RIGHT_GLOB", open_images},
     Kind{"sim", "SCENE", open_simulated},
 };
 

@@ -10,8 +10,8 @@ namespace flogmap {
 
 /// How a user names a source: `spec` is "kind:where", for instance "euroc:/data" or "sim:room".
 struct SourceOptions {
-  std::string spec;
-  std::string calibration_file;  // overrides what the source carries; empty: the source's own
+  std::string spec{};
+  std::string calibration_file{};  // overrides what the source carries; empty: the source's own
   bool loop = false;       // a recording begins again at its end; the drop of its timestamp tells the wrap
   std::uint64_t seed = 1;  // of everything random in a simulated source
 };
