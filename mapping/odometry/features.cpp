@@ -81,24 +81,31 @@ struct Candidate {
   int rank_in_cell = 0;
 };
 
-Candidate strongest_in_block(const Image<float>& strength, int left, int top, int right, int bottom) {
-  Candidate best{left, top, strength.at(left, top)};
-  for (int y = top; y < bottom; ++y) {
-    const float* row = strength.row(y);
-    for (int x = left; x < right; ++x) {
-      if (row[x] > best.strength) best = {x, y, row[x]};
-    }
-  }
-  return best;
-}
-
-bool is_summit(const Image<float>& strength, const Candidate& c) {
-  for (int y = c.y - 1; y <= c.y + 1; ++y) {
-    for (int x = c.x - 1; x <= c.x + 1; ++x) {
-      if (strength.at(x, y) > c.strength) return false;
+bool is_summit(const Image<float>& strength, int x, int y) {
+  const float here = strength.at(x, y);
+  for (int v = y - 1; v <= y + 1; ++v) {
+    const float* row = strength.row(v);
+    for (int u = x - 1; u <= x + 1; ++u) {
+      if (row[u] > here) return false;
     }
   }
   return true;
+}
+
+struct Block {
+  int left, top, right, bottom;
+};
+
+/// The strongest summit of a block; strength 0 if it has none stronger than `least`.
+Candidate strongest_summit(const Image<float>& strength, const Block& block, float least) {
+  Candidate best{block.left, block.top, 0};
+  for (int y = block.top; y < block.bottom; ++y) {
+    const float* row = strength.row(y);
+    for (int x = block.left; x < block.right; ++x) {
+      if (row[x] > best.strength && row[x] >= least && is_summit(strength, x, y)) best = {x, y, row[x]};
+    }
+  }
+  return best;
 }
 
 std::vector<Candidate> summits(const Image<float>& strength, float least) {
@@ -106,9 +113,9 @@ std::vector<Candidate> summits(const Image<float>& strength, float least) {
   const int right = strength.width - kCornerBorderPx, bottom = strength.height - kCornerBorderPx;
   for (int y = kCornerBorderPx; y < bottom; y += kBlockPx) {
     for (int x = kCornerBorderPx; x < right; x += kBlockPx) {
-      const Candidate c =
-          strongest_in_block(strength, x, y, std::min(x + kBlockPx, right), std::min(y + kBlockPx, bottom));
-      if (c.strength >= least && is_summit(strength, c)) candidates.push_back(c);
+      const Block block{x, y, std::min(x + kBlockPx, right), std::min(y + kBlockPx, bottom)};
+      const Candidate c = strongest_summit(strength, block, least);
+      if (c.strength > 0) candidates.push_back(c);
     }
   }
   return candidates;

@@ -1,5 +1,7 @@
 #include "mapping/odometry/stereo_odometry.hpp"
 
+#include <map>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -32,6 +34,12 @@ struct Current {
   FrameFeatures features;
 };
 
+double mean_grey(const Image<std::uint8_t>& image) {
+  const auto sum = std::accumulate(image.pixels.begin(), image.pixels.end(), std::int64_t{0});
+  return image.empty() ? 0 : static_cast<double>(sum) / static_cast<double>(image.size());
+}
+
+constexpr double kDarkGrey = 20;
 constexpr int kKeyFramesToTry = 3;  // while not lost
 
 }  // namespace
@@ -67,7 +75,8 @@ class StereoOdometry::Tracker {
 
  private:
   [[nodiscard]] std::string too_few_corners(const Current& current) const {
-    return counted("too few corners", static_cast<int>(current.features.corners.size()), options_.min_corners);
+    const char* why = mean_grey(current.frame.left) < kDarkGrey ? "too dark: too few corners" : "too few corners";
+    return counted(why, static_cast<int>(current.features.corners.size()), options_.min_corners);
   }
 
   Tracking without_pose(Tracking tracking, std::string reason) const {
