@@ -1,6 +1,7 @@
 #include "mapping/front_end.hpp"
 
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "mapping/stereo/segment_filter.hpp"
@@ -38,6 +39,9 @@ struct FrontEnd::Parts {
         selector(options.views, rectifier.camera()),
         poses(std::move(given_poses)),
         up_in_camera(std::move(up)) {
+    if (options.align == AlignMode::gravity && !up_in_camera) {
+      throw std::runtime_error("--align gravity: the source has no inertial sensor; allowed: auto|none|ground");
+    }
     start_anew();
   }
 
@@ -45,14 +49,28 @@ struct FrontEnd::Parts {
     odometry.reset();
     selector.reset();
     waiting.clear();
-    level_start.emplace(options.start, rectifier.camera(), up_in_camera);
     world_from_odometry.reset();
-    if (poses) world_from_odometry = SE3::Identity();
-    if (options.first_world_from_camera) world_from_odometry = options.first_world_from_camera;
+    alignment = "undecided";
+    if (poses) {
+      begin_at(SE3::Identity(), "given poses");
+    } else if (options.first_world_from_camera) {
+      begin_at(*options.first_world_from_camera, "given first pose");
+    } else if (options.align == AlignMode::none) {
+      begin_at(level_of_camera(), "none: the first camera counts as level and stands at z = 0");
+    } else {
+      level_start.emplace(rectifier.camera(), options.level,
+                          options.align == AlignMode::ground ? std::nullopt : up_in_camera);
+    }
+  }
+
+  void begin_at(const SE3& world_from_first, const std::string& how) {
+    world_from_odometry = world_from_first;
+    alignment = how;
   }
 
   Tracking track(const FrontEndResult& result);
   void place(FrontEndResult& result);
+  void deliver(FrontEndResult& result);
 
   FrontEndOptions options;
   Rectifier rectifier;
@@ -63,6 +81,7 @@ struct FrontEnd::Parts {
   std::optional<Eigen::Vector3d> up_in_camera;
   std::optional<LevelStart> level_start;
   std::optional<SE3> world_from_odometry;
+  std::string alignment;
   std::vector<Waiting> waiting;
 };
 
@@ -112,10 +131,18 @@ void FrontEnd::Parts::place(FrontEndResult& result) {
     frame.view = View{timestamp_ns, tracking.odometry_from_camera, *result.disparity, result.rectified->left};
   }
   waiting.push_back(std::move(frame));
-  if (!world_from_odometry) world_from_odometry = level_start->add(*result.disparity, tracking.odometry_from_camera);
-  if (!world_from_odometry) return;
-
+  if (!world_from_odometry) {
+    const std::optional<Level> level =
+        level_start->add(timestamp_ns, *result.disparity, tracking.odometry_from_camera);
+    if (!level) return;
+    begin_at(level->world_from_odometry, level->how);
+  }
   result.world_from_camera = *world_from_odometry * tracking.odometry_from_camera;
+  deliver(result);
+}
+
+/// Frames that waited for the world get their place in it.
+void FrontEnd::Parts::deliver(FrontEndResult& result) {
   for (Waiting& known : waiting) {
     known.entry.world_from_camera = *world_from_odometry * known.entry.world_from_camera;
     result.path.push_back(known.entry);
@@ -126,11 +153,21 @@ void FrontEnd::Parts::place(FrontEndResult& result) {
   waiting.clear();
 }
 
+FrontEndResult FrontEnd::finish() {
+  Parts& p = *parts_;
+  FrontEndResult result;
+  if (p.waiting.empty()) return result;
+  const Level level = p.level_start->decide_now();
+  p.begin_at(level.world_from_odometry, level.how);
+  p.deliver(result);
+  return result;
+}
+
 void FrontEnd::reset() { parts_->start_anew(); }
 
 void FrontEnd::continue_from(const SE3& world_from_camera) {
   parts_->start_anew();
-  parts_->world_from_odometry = world_from_camera;
+  parts_->begin_at(world_from_camera, "continued where the stored map ended");
 }
 
 const StereoCamera& FrontEnd::camera() const { return parts_->rectifier.camera(); }
@@ -143,10 +180,6 @@ double FrontEnd::max_disparity_px() const {
   return stereo.min_disparity + count - 1;
 }
 
-std::string FrontEnd::alignment() const {
-  const Parts& p = *parts_;
-  if (p.poses || p.options.first_world_from_camera) return "given";
-  return p.world_from_odometry ? p.level_start->decided_by() : "undecided";
-}
+std::string FrontEnd::alignment() const { return parts_->alignment; }
 
 }  // namespace flogmap

@@ -1,6 +1,7 @@
 // From a captured pair to a pose and, now and then, a view for the map: the vision half of the program.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,11 +18,20 @@
 
 namespace flogmap {
 
+/// How the world is levelled when no first pose is given.
+enum class AlignMode : std::uint8_t {
+  automatic,  // gravity where a sensor tells it, else the ground, else none
+  none,       // the first camera counts as level and stands at z = 0
+  gravity,    // needs a sensor
+  ground,     // by the dominant plane of the first seconds, whatever a sensor says
+};
+
 struct FrontEndOptions {
   StereoOptions stereo;
   OdometryOptions odometry;
   ViewSelectorOptions views;
-  LevelStartOptions start;
+  AlignMode align = AlignMode::automatic;
+  LevelOptions level;
   std::optional<SE3> first_world_from_camera;  // rectified left camera; nothing = level_start decides
 };
 
@@ -48,7 +58,7 @@ struct FrontEndResult {
 class FrontEnd {
  public:
   /// `poses`: map with these instead of odometry. `up_in_camera`: unit vector against gravity in the rectified
-  /// left camera of the first frame, if a sensor says so.
+  /// left camera of the first frame, if a sensor says so. Throws std::runtime_error if AlignMode::gravity lacks it.
   FrontEnd(const FrontEndOptions& options, Rectifier rectifier, std::optional<GivenPoses> poses,
            std::optional<Eigen::Vector3d> up_in_camera);
   ~FrontEnd();
@@ -56,6 +66,10 @@ class FrontEnd {
   FrontEnd& operator=(FrontEnd&&) noexcept;
 
   FrontEndResult process(const StereoFrame& frame);
+
+  /// The source has ended. If it is still undecided which way is up, it is decided by what was seen: `path` and
+  /// `views` of the answer hold the frames that waited for it.
+  FrontEndResult finish();
 
   /// Forgets the path; the next frame is a first frame again.
   void reset();
@@ -66,7 +80,7 @@ class FrontEnd {
   [[nodiscard]] const StereoCamera& camera() const;
   [[nodiscard]] double max_disparity_px() const;
 
-  /// What the heights rest on: "given", "gravity", "ground" or "none"; "undecided" during the first seconds.
+  /// What the heights rest on, in words; "undecided" during the first seconds.
   [[nodiscard]] std::string alignment() const;
 
  private:

@@ -100,7 +100,7 @@ void add_start_options(OptionTable& table, Options& options) {
              .help = "where the camera stands at first, in the world (z up, floor at 0)",
              .parse = [&options](const std::string& text) { options.first_pose = parse_pose(text); },
              .show = [&options] { return options.first_pose ? pose_text(*options.first_pose) : std::string(); }});
-  table.choice<AlignMode>("align", options.front_end.start.mode,
+  table.choice<AlignMode>("align", options.front_end.align,
                           {{"auto", AlignMode::automatic}, {"none", AlignMode::none},
                            {"gravity", AlignMode::gravity}, {"ground", AlignMode::ground}},
                           "how the world is levelled without --first-pose");

@@ -79,7 +79,7 @@ void Pipeline::run_stage(Stage stage) {
 void Pipeline::capture() {
   const std::string epoch = options_.continued.epoch;
   generation_ = {1, epoch.empty() ? random_epoch() : epoch, epoch.empty() ? "started" : "continued"};
-  frames_.push({generation_, std::nullopt, Clock::now()});
+  frames_.push({.generation = generation_, .frame = {}, .at = Clock::now()});
   control_.started();
   for (bool more = true; more;) {
     const CaptureTurn turn = control_.await_turn();
@@ -111,12 +111,13 @@ bool Pipeline::read_frame() {
   statistics_.add(Stage::read, ms_since(start));
   const std::int64_t timestamp_ns = frame->timestamp_ns;
   control_.await_due(timestamp_ns);
-  frames_.push({generation_, std::move(frame), Clock::now()});
+  frames_.push({.generation = generation_, .frame = std::move(frame), .at = Clock::now()});
   control_.frame_delivered(timestamp_ns);
   return true;
 }
 
 void Pipeline::at_end() {
+  frames_.push({.generation = generation_, .frame = {}, .ended = true, .at = Clock::now()});
   if (control_.loop() && control_.state() != SessionState::draining) {
     restart("the recording starts again", 0);
   } else {
@@ -132,7 +133,7 @@ void Pipeline::restart(const std::string& reason, double position_s) {
   }
   frames_read_ = 0;
   generation_ = {generation_.number + 1, random_epoch(), reason};
-  frames_.push({generation_, std::nullopt, Clock::now()});
+  frames_.push({.generation = generation_, .frame = {}, .at = Clock::now()});
 }
 
 /// Forwards, every frame in between is mapped, only faster, so that the map has no hole and the path no jump;
@@ -152,14 +153,28 @@ void Pipeline::go_to(double position_s) {
 void Pipeline::see() {
   while (std::optional<Captured> captured = frames_.pop()) {
     if (captured->generation.number != seen_generation_) begin_generation(captured->generation);
+    if (captured->ended) {
+      FrontEndResult rest = front_end_.finish();
+      pass_on(rest);
+    }
     if (!captured->frame) continue;
     FrontEndResult result = front_end_.process(*captured->frame);
     report(*captured, result);
-    for (View& view : result.views) views_.push({.view = std::move(view), .generation = {}, .begun = {}});
+    pass_on(result);
     if (Clock::now() - status_at_ > kStatusEvery) report_status();
   }
   report_status();
   views_.close();
+}
+
+/// Poses to the observer, views to the map.
+void Pipeline::pass_on(FrontEndResult& result) {
+  {
+    const std::scoped_lock lock(counters_mutex_);
+    counters_.mapped_views += result.views.size();
+  }
+  if (!result.path.empty()) observer_.path_grew(result.path);
+  for (View& view : result.views) views_.push({.view = std::move(view), .generation = {}, .begun = {}});
 }
 
 /// The map thread begins the new map before this thread goes on, so that no pose of it comes too early and no
@@ -182,11 +197,9 @@ void Pipeline::report(const Captured& captured, FrontEndResult& result) {
     ++counters_.frames;
     counters_.tracked += result.tracking.has_pose() ? 1 : 0;
     counters_.lost += result.tracking.state == TrackingState::lost ? 1 : 0;
-    counters_.mapped_views += result.views.size();
     counters_.warnings.clear();
     if (!result.tracking.reason.empty()) counters_.warnings.push_back(result.tracking.reason);
   }
-  if (!result.path.empty()) observer_.path_grew(result.path);
   const std::int64_t timestamp_ns = captured.frame->timestamp_ns;
   TrackingReport tracked;
   tracked.timestamp_ns = timestamp_ns;

@@ -79,7 +79,8 @@ class Pipeline {
   };
   struct Captured {
     Generation generation;
-    std::optional<StereoFrame> frame;  // nothing: only the generation is new
+    std::optional<StereoFrame> frame;  // nothing: the generation is new, or ...
+    bool ended = false;                // ... the source has ended
     std::chrono::steady_clock::time_point at;
   };
   struct ForMap {
@@ -95,6 +96,7 @@ class Pipeline {
   void at_end();
   void see();
   void begin_generation(const Generation& generation);
+  void pass_on(FrontEndResult& result);
   void report(const Captured& captured, FrontEndResult& result);
   void report_status();
   void map();

@@ -8,7 +8,7 @@ flogmap_target(options SOURCES option_table.cpp options.cpp
 flogmap_target(pipeline SOURCES capture_control.cpp stage_statistics.cpp pipeline.cpp
                PUBLIC front_end flog camera Threads::Threads)
 
-if(TARGET hub AND TARGET map_export)
+
 flogmap_target(flogmap EXECUTABLE
   SOURCES
     main.cpp
@@ -23,4 +23,4 @@ flogmap_target(flogmap EXECUTABLE
   PRIVATE options pipeline hub map_store map_export trajectory CLI11::CLI11 nlohmann_json::nlohmann_json)
 target_compile_definitions(flogmap PRIVATE FLOGMAP_VERSION="${PROJECT_VERSION}")
 set_target_properties(flogmap PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
-endif()
+

@@ -9,14 +9,14 @@
 #include <memory>
 #include <string>
 
-#include "camera/calibration/read_calibration.hpp"
+#include "camera/calibration/detect.hpp"
 #include "camera/picture_files.hpp"
 #include "camera/rectifier.hpp"
 #include "mapping/stereo/disparity_matcher.hpp"
 #include "mapping/stereo/segment_filter.hpp"
 #include "server/commands/commands.hpp"
 #include "server/options.hpp"
-#include "server/picture_colours.hpp"
+#include "server/picture_encoding.hpp"
 
 namespace flogmap {
 namespace {
@@ -39,9 +39,12 @@ Picture read_input(const std::string& file) {
 StereoCalibration calibration_for(const DisparityArguments& arguments, const Picture& left) {
   if (!arguments.calibration.empty()) return read_calibration(arguments.calibration);
   StereoCalibration calibration;
-  calibration.left = {.width_px = left.width, .height_px = left.height,
-                      .fx_px = static_cast<double>(left.width), .fy_px = static_cast<double>(left.width),
-                      .cx_px = left.width / 2.0, .cy_px = left.height / 2.0};
+  CameraIntrinsics& camera = calibration.left;
+  camera.width_px = left.width;
+  camera.height_px = left.height;
+  camera.fx_px = camera.fy_px = left.width;
+  camera.cx_px = left.width / 2.0;
+  camera.cy_px = left.height / 2.0;
   calibration.right = calibration.left;
   calibration.right_from_left.translation().x() = -0.1;
   calibration.rectified = true;
@@ -64,6 +67,17 @@ void write_pfm(const std::string& file, const Image<float>& disparity) {
   }
   out.close();
   if (!out) throw UsageError("--out " + file + ": cannot be written");
+}
+
+/// The disparity in colours, as the page shows it.
+void write_picture_of(const DisparityImage& disparity, const std::string& file) {
+  const PictureReport report{0, nullptr, std::make_shared<DisparityImage>(disparity)};
+  const std::optional<EncodedPicture> picture = encode_picture(report, {ImageStream::disparity, 0});
+  if (!picture) throw std::runtime_error(file + ": the disparity has no picture");
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << picture->data;
+  out.close();
+  if (!out) throw UsageError(file + ": cannot be written");
 }
 
 std::string beside(const std::string& pfm) {
@@ -97,7 +111,7 @@ int compute(DisparityArguments arguments) {
   const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   write_pfm(arguments.out, disparity.px);
   const std::string png = beside(arguments.out);
-  if (!write_picture(png, coloured_disparity(disparity.px).picture)) throw UsageError(png + ": cannot be written");
+  write_picture_of(disparity, png);
   std::printf("%dx%d, density %.1f %%, %.1f ms; written: %s, %s\n", disparity.px.width, disparity.px.height,
               density_percent(disparity.px), ms, arguments.out.c_str(), png.c_str());
   return 0;

@@ -127,7 +127,11 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
 
   const MapSnapshot snapshot = pipeline.integrator().snapshot();
-  StoredMap map{.epoch = collector.epoch(), .info = snapshot.info, .camera = camera, .revision = snapshot.revision};
+  StoredMap map;
+  map.epoch = collector.epoch();
+  map.info = snapshot.info;
+  map.camera = camera;
+  map.revision = snapshot.revision;
   for (const auto& [index, tile] : snapshot.tiles) map.tiles.push_back({index, tile->revision, tile});
   map.trajectory = collector.path();
   map.options_json = options_json;

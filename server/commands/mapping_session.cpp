@@ -36,7 +36,7 @@ FrontEnd make_front_end(const Options& options, const StereoSource& source, cons
   FrontEndOptions front_end = options.front_end;
   if (options.first_pose) {
     front_end.first_world_from_camera = *options.first_pose * frame_from_camera;
-  } else if (front_end.start.mode == AlignMode::automatic) {
+  } else if (front_end.align == AlignMode::automatic) {
     // A simulated camera knows where it stands; then the map lies on the scene's own plan.
     front_end.first_world_from_camera = source.true_pose(source.info().first_timestamp_ns);
   }

@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "server/commands/commands.hpp"
@@ -37,13 +38,16 @@ class ServeObserver final : public PipelineObserver {
   void path_grew(const std::vector<TrajectoryEntry>& entries) override {
     path_.insert(path_.end(), entries.begin(), entries.end());
     if (store_ != nullptr) store_->append_trajectory(entries);
-    // Frames of the first seconds get their poses all at once, when it is decided which way is up. The last of
-    // them comes with its own tracking report.
-    if (entries.size() > 1) {
-      hub_->rewrite_trajectory({path_.begin(), path_.end() - 1}, "levelled");
+    // The hub appends the poses of tracking reports itself. Only frames of the first seconds get theirs later,
+    // all at once, when it is decided which way is up.
+    if (entries.size() > 1 || entries.back().timestamp_ns != tracked_ns_) {
+      hub_->rewrite_trajectory(path_, "levelled");
     }
   }
-  void frame_tracked(const TrackingReport& report) override { hub_->publish_tracking(report); }
+  void frame_tracked(const TrackingReport& report) override {
+    if (report.world_from_camera) tracked_ns_ = report.timestamp_ns;
+    hub_->publish_tracking(report);
+  }
   void pictures_taken(const PictureReport& report) override { hub_->publish_pictures(report); }
   void status_changed(const StatusReport& report) override {
     StatusReport with_store = report;
@@ -58,6 +62,7 @@ class ServeObserver final : public PipelineObserver {
   Hub* hub_ = nullptr;
   StoreWriter* store_ = nullptr;
   std::vector<TrajectoryEntry> path_;
+  std::int64_t tracked_ns_ = -1;  // newest frame whose pose the hub has
 };
 
 /// The built page: beside the program in a checkout, or where `cmake --install` puts it.
