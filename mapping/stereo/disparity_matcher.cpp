@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mapping/stereo/opencv_matcher.hpp"
+#include "mapping/stereo/block_matcher.hpp"
 #include "mapping/stereo/sgm_matcher.hpp"
 
 namespace flogmap {
@@ -50,11 +50,10 @@ std::unique_ptr<DisparityMatcher> make_matcher(const StereoOptions& options, con
   if (complete.num_disparities == 0) {
     complete.num_disparities = auto_num_disparities(camera, options.nearest_m, options.min_disparity);
   }
-  if (complete.matcher == MatcherKind::sgm) {
-    complete.num_disparities = (complete.num_disparities + kStep - 1) / kStep * kStep;
-    return make_sgm_matcher(complete, match_kernels(complete.num_disparities));
-  }
-  return make_opencv_matcher(complete);
+  complete.num_disparities = (complete.num_disparities + kStep - 1) / kStep * kStep;
+  const MatchKernels kernels = match_kernels(complete.num_disparities);
+  return complete.matcher == MatcherKind::sgm ? make_sgm_matcher(complete, kernels)
+                                              : make_block_matcher(complete, kernels);
 }
 
 }  // namespace flogmap

@@ -62,19 +62,21 @@ struct Workspace {
 class SgmMatcher : public DisparityMatcher {
  public:
   SgmMatcher(const StereoOptions& options, const MatchKernels& kernels)
-      : range_{options.min_disparity, options.num_disparities},
+      : rule_{.min_disparity = options.min_disparity,
+              .num_disparities = options.num_disparities,
+              .max_left_right_px = kMaxLeftRightPx},
         num_threads_(threads_to_use(options.num_threads)),
         kernels_(kernels),
         jump_(jump_by_brightness_step()),
         padding_(kernels.stride, 0),
         workspaces_(num_threads_) {
-    std::fill(padding_.begin() + range_.num_disparities, padding_.end(), std::uint8_t{0xFF});
+    std::fill(padding_.begin() + rule_.num_disparities, padding_.end(), std::uint8_t{0xFF});
   }
 
   DisparityImage match(const RectifiedFrame& pair) override {
     DisparityImage disparity{Image<float>(pair.left.width, pair.left.height)};
     if (disparity.px.empty()) return disparity;
-    census_.compute(pair, range_.min_disparity, kernels_, num_threads_);
+    census_.compute(pair, rule_.min_disparity, kernels_, num_threads_);
     const std::vector<Band> bands = bands_of(pair.left.height);
     parallel_for(num_threads_, static_cast<int>(bands.size()), [&](int worker, int i) {
       match_band(pair.left, bands[i], workspaces_[worker], disparity.px);
@@ -88,7 +90,7 @@ class SgmMatcher : public DisparityMatcher {
     compute_costs(left, band, work);
     paths_from_below(left, band, work);
     start_paths(left.width, work);
-    WinnersBuffer winners(left.width, kernels_.stride);
+    WinnersBuffer winners(left.width, kernels_.stride, false);
     work.along.resize(work.vertical.size());
     for (int y = band.warm_begin; y < band.end; ++y) {
       const PathRow path{work.vertical.data(), work.vertical_min.data()};
@@ -98,7 +100,7 @@ class SgmMatcher : public DisparityMatcher {
       run_along(left, band, y, work);
       kernels_.winners_row(work.along.data(), work.vertical.data(), work.upward.data() + row, left.width,
                            padding_.data(), winners.row());
-      row_disparities(winners.row(), left.width, range_, kMaxLeftRightPx, disparity.row(y));
+      row_disparities(winners.row(), left.width, rule_, disparity.row(y));
     }
   }
 
@@ -161,7 +163,7 @@ class SgmMatcher : public DisparityMatcher {
                          work.along.data());
   }
 
-  DisparityRange range_;
+  WinnersRule rule_;
   int num_threads_;
   MatchKernels kernels_;
   std::array<std::uint8_t, 256> jump_;

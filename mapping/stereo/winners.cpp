@@ -15,24 +15,29 @@ float v_fit(int before, int cost, int after) {
 
 }  // namespace
 
-WinnersBuffer::WinnersBuffer(int width, int stride)
-    : width_(width), bytes_(static_cast<std::size_t>(width) * 5 + stride) {}
+WinnersBuffer::WinnersBuffer(int width, int stride, bool with_second)
+    : width_(width), with_second_(with_second), bytes_(static_cast<std::size_t>(width) * 6 + stride) {}
 
 WinnersRow WinnersBuffer::row() {
   std::uint8_t* p = bytes_.data();
-  return {p, p + width_, p + 2 * width_, p + 3 * width_, p + 4 * width_};
+  return {p,
+          p + width_,
+          p + 2 * width_,
+          p + 3 * width_,
+          with_second_ ? p + 4 * width_ : nullptr,
+          p + 5 * width_};
 }
 
-void row_disparities(const WinnersRow& winners, int width, DisparityRange range, int max_left_right_px,
-                     float* disparity) {
+void row_disparities(const WinnersRow& winners, int width, const WinnersRule& rule, float* disparity) {
   for (int x = 0; x < width; ++x) {
     const int best = winners.best[x];
-    const int right_x = x - best - range.min_disparity;
+    const int right_x = x - best - rule.min_disparity;
     disparity[x] = std::numeric_limits<float>::quiet_NaN();
-    if (right_x < 0 || right_x >= width || best + 1 >= range.num_disparities) continue;
-    if (std::abs(winners.right[width - 1 - x + best] - best) > max_left_right_px) continue;
+    if (right_x < 0 || right_x >= width || best + 1 >= rule.num_disparities) continue;
+    if (std::abs(winners.right[width - 1 - x + best] - best) > rule.max_left_right_px) continue;
+    if (winners.second && winners.second[x] < winners.cost[x] + rule.least_lead) continue;
     const float fraction = best == 0 ? 0.F : v_fit(winners.before[x], winners.cost[x], winners.after[x]);
-    disparity[x] = static_cast<float>(range.min_disparity + best) + fraction;
+    disparity[x] = static_cast<float>(rule.min_disparity + best) + fraction;
   }
 }
 

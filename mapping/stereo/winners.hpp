@@ -11,23 +11,26 @@ namespace flogmap {
 /// The memory behind a WinnersRow.
 class WinnersBuffer {
  public:
-  WinnersBuffer(int width, int stride);
+  WinnersBuffer(int width, int stride, bool with_second);
   [[nodiscard]] WinnersRow row();
 
  private:
   int width_;
+  bool with_second_;
   std::vector<std::uint8_t> bytes_;
 };
 
-struct DisparityRange {
+/// What an answer must satisfy.
+struct WinnersRule {
   int min_disparity = 0;
   int num_disparities = 0;
+  int max_left_right_px = 0;  // the right picture's own answer differs by no more
+  int least_lead = 0;         // the second best cost is higher by at least this; needs WinnersRow::second
 };
 
-/// Disparities of one row, NaN where the right picture disagrees by more than `max_left_right_px`, where the
-/// match lies outside it, and at the nearest disparity of the range, beyond which a better match may lie.
+/// Disparities of one row, NaN where the rule is broken, where the match lies outside the right picture, and
+/// at the nearest disparity of the range, beyond which a better match may lie.
 /// Between whole disparities the costs are taken as two straight lines of the same slope.
-void row_disparities(const WinnersRow& winners, int width, DisparityRange range, int max_left_right_px,
-                     float* disparity);
+void row_disparities(const WinnersRow& winners, int width, const WinnersRule& rule, float* disparity);
 
 }  // namespace flogmap

@@ -127,12 +127,44 @@ void hamming_row(const CensusRow& left, const CensusRow& right, int width, std::
   }
 }
 
-void window_cost(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, int num_bytes,
+template <int kShift>
+void shifted_sum(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, int num_bytes,
                  std::uint8_t* cost) {
-  const Bytes half = splat(4);
+  const Bytes half = splat(1 << (kShift - 1));
   for (int i = 0; i < num_bytes; i += kLanes) {
     const Bytes sum = add(add(load(a + i), load(b + i)), load(c + i));
-    store(cost + i, shift_bits_right<3>(add(sum, half)));
+    store(cost + i, shift_bits_right<kShift>(add(sum, half)));
+  }
+}
+
+// ---- windows of the block matcher ---------------------------------------------------------------------
+
+template <int kVectors>
+void sum_along(const std::uint8_t* costs, int width, int step, std::uint8_t* sums) {
+  constexpr int kStride = kVectors * kLanes;
+  for (int x = 0; x < width; ++x) {
+    const std::uint8_t* left = costs + (x < step ? 0 : x - step) * kStride;
+    const std::uint8_t* right = costs + (x + step < width ? x + step : width - 1) * kStride;
+    for (int i = 0; i < kStride; i += kLanes) {
+      store(sums + x * kStride + i, add(add(load(left + i), load(right + i)), load(costs + x * kStride + i)));
+    }
+  }
+}
+
+template <int kVectors>
+void two_best_corners(const std::uint8_t* above, const std::uint8_t* below, int width, int reach,
+                      std::uint8_t* sums) {
+  constexpr int kStride = kVectors * kLanes;
+  for (int x = 0; x < width; ++x) {
+    const int left = (x < reach ? 0 : x - reach) * kStride;
+    const int right = (x + reach < width ? x + reach : width - 1) * kStride;
+    for (int i = 0; i < kStride; i += kLanes) {
+      const Bytes a = load(above + left + i), b = load(above + right + i);
+      const Bytes c = load(below + left + i), d = load(below + right + i);
+      const Bytes first = min(a, b), third = min(c, d);  // the second best is the loser of one of these,
+      const Bytes losers = min(max(a, b), max(c, d));    // or the loser of the final
+      store(sums + x * kStride + i, add(min(first, third), min(max(first, third), losers)));
+    }
   }
 }
 
@@ -241,6 +273,17 @@ struct RightWinners {
   }
 };
 
+/// The least cost of all lanes but `best` and its neighbours.
+template <int kVectors>
+FLOGMAP_INLINE std::uint8_t second_best(const Lanes<kVectors>& S, const Lanes<kVectors>& index, int best) {
+  Lanes<kVectors> others;
+  for (int i = 0; i < kVectors; ++i) {
+    const Bytes distance = subtract(index.v[i], splat(static_cast<std::uint8_t>(best - 1)));
+    others.v[i] = bit_or(S.v[i], less(distance, splat(3)));
+  }
+  return first_byte(least_everywhere(others));
+}
+
 template <int kVectors>
 void winners_row(const std::uint8_t* along, const std::uint8_t* down, const std::uint8_t* up, int width,
                  const std::uint8_t* padding, const WinnersRow& winners) {
@@ -263,6 +306,7 @@ void winners_row(const std::uint8_t* along, const std::uint8_t* down, const std:
     winners.cost[x] = first_byte(cost);
     winners.before[x] = costs[best];
     winners.after[x] = costs[best + 2];
+    if (winners.second) winners.second[x] = second_best(S, right.own_index, best);
   }
 }
 
@@ -274,7 +318,10 @@ MatchKernels kernels_of_size(const char* name) {
           kVectors * kLanes,
           census_row,
           hamming_row<kVectors>,
-          window_cost,
+          shifted_sum<3>,
+          sum_along<kVectors>,
+          shifted_sum<1>,
+          two_best_corners<kVectors>,
           path_down<kVectors>,
           paths_along<kVectors>,
           winners_row<kVectors>};

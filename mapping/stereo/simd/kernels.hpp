@@ -23,6 +23,7 @@ struct WinnersRow {
   std::uint8_t* cost;    // its cost
   std::uint8_t* before;  // cost one disparity less; undefined at index 0
   std::uint8_t* after;   // cost one disparity more; undefined at the last index
+  std::uint8_t* second;  // least cost more than one disparity away; null if nobody asks
   std::uint8_t* right;   // best index seen from the right pixel; width + stride entries
 };
 
@@ -53,6 +54,17 @@ struct MatchKernels {
   /// Cost of a 3 x 3 window from three volume rows: (a + b + c + 4) / 8; at most 27.
   void (*window_cost)(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, int num_bytes,
                       std::uint8_t* cost);
+
+  /// Volume row: the sum over x-step, x, x+step (clamped).
+  void (*sum_along)(const std::uint8_t* costs, int width, int step, std::uint8_t* sums);
+
+  /// Cost of a large window from three rows of sum_along: (a + b + c + 1) / 2; at most 122.
+  void (*box_cost)(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, int num_bytes,
+                   std::uint8_t* cost);
+
+  /// Sum of the two least of the four windows at (x - reach, x + reach) in two rows (clamped); at most 244.
+  void (*two_best_corners)(const std::uint8_t* above, const std::uint8_t* below, int width, int reach,
+                           std::uint8_t* sums);
 
   /// Semi-global path costs from the row before into this one. `jumps[x]`: between the two rows.
   /// `padding`: stride bytes, 0xFF in padding lanes, else 0. `here` may be `before`.
