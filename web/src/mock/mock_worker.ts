@@ -49,7 +49,10 @@ function receive(bytes: ArrayBuffer): void {
 function obey(order: Order): void {
   if (order === 'pause' || order === 'resume') simulation.paused = order === 'pause';
   else if (order === 'reset') send(simulation.reset());
-  else if (typeof order === 'object') for (let i = 0; i < order.ahead; ++i) simulation.step();
+  else if (typeof order === 'object') {
+    for (let i = 0; i < order.ahead; ++i) simulation.step();
+    sendSnapshot();
+  }
   send(simulation.status());
 }
 

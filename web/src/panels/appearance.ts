@@ -31,6 +31,8 @@ export function appearancePanel({ settings }: Page): HTMLElement {
   const operators = select('Operators', OPERATOR_TITLES, (value) => settings.set({ operators: value }));
   const threshold = slider('Obstacle from', { min: 0.02, max: 1, step: 0.01 }, (value) => value.toFixed(2), (value) => settings.set({ threshold: value }));
   const palette = paletteChoice((name) => settings.set({ palette: name }));
+  const spread = slider('Spread layers', { min: 0, max: 2, step: 0.05 }, (value) => (value === 0 ? 'true height' : `${value.toFixed(2)} m apart`), (value) => settings.set({ spread: value }));
+  const clip = slider('Cut above', { min: 0.1, max: 10, step: 0.1 }, (value) => (value >= 10 ? 'nothing' : `${value.toFixed(1)} m`), (value) => settings.set({ clipHeight: value }));
   const switches = [
     ['classes', toggle('Three classes only', (classes) => settings.set({ classes }), 'Occupied, free or unknown by the threshold, instead of shades')],
     ['colourByHeight', toggle('Colour by height', (colourByHeight) => settings.set({ colourByHeight }), 'Obstacles take the colour of their layer')],
@@ -39,7 +41,10 @@ export function appearancePanel({ settings }: Page): HTMLElement {
     ['showPath', toggle('Path', (showPath) => settings.set({ showPath }))],
   ] as const;
   const pathBy = segmented<'time' | 'state'>('Colour of the path', [['time', 'By time'], ['state', 'By tracking']], (value) => settings.set({ pathBy: value }));
-  settings.watch(['style', 'operators', 'threshold', 'palette', 'classes', 'colourByHeight', 'markConflict', 'showGrid', 'showPath', 'pathBy'], (now) => {
+  settings.watch(['style', 'operators', 'threshold', 'palette', 'classes', 'colourByHeight', 'markConflict', 'showGrid', 'showPath', 'pathBy', 'solid', 'spread', 'clipHeight'], (now) => {
+    spread.show(now.spread);
+    clip.show(now.clipHeight);
+    spread.element.hidden = clip.element.hidden = !now.solid;
     style.show(now.style);
     setText(words, STYLE_WORDS[now.style]);
     operators.show(now.operators);
@@ -49,7 +54,7 @@ export function appearancePanel({ settings }: Page): HTMLElement {
     pathBy.show(now.pathBy);
     pathBy.element.hidden = !now.showPath;
   });
-  return section('Map', 'map', style.element, words, operators.element, threshold.element, palette.element, ...switches.map(([, control]) => control.element), pathBy.element);
+  return section('Map', 'map', style.element, words, operators.element, threshold.element, spread.element, clip.element, palette.element, ...switches.map(([, control]) => control.element), pathBy.element);
 }
 
 function paletteChoice(choose: (name: (typeof PALETTES)[number]) => void): { element: HTMLElement; show(name: string): void } {

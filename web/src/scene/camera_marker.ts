@@ -1,6 +1,6 @@
 // The camera where it is now: a dot, its field of view on the ground, and a frustum in the solid view.
 
-import { BufferAttribute, BufferGeometry, CircleGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial } from 'three';
+import { BufferAttribute, BufferGeometry, CanvasTexture, CircleGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, SRGBColorSpace } from 'three';
 import { worldFromCamera, type Vector } from '../geometry';
 import { TrackingState, type PoseValue } from '../gen/flogmap/v1/map_pb';
 import type { CameraModel } from '../gen/flogmap/v1/stream_pb';
@@ -16,12 +16,17 @@ export class CameraMarker {
   private readonly rim = new Mesh(new CircleGeometry(1, 32), new MeshBasicMaterial({ color: '#ffffff', depthTest: false, transparent: true }));
   private readonly dot = new Mesh(new CircleGeometry(1, 32), new MeshBasicMaterial({ color: this.colour, depthTest: false, transparent: true }));
 
+  // The live picture at the far end of the frustum, in the solid view.
+  private readonly picture = new Mesh(new BufferGeometry(), new MeshBasicMaterial({ side: DoubleSide, transparent: true, opacity: 0.95 }));
+
   constructor() {
+    this.picture.geometry.setAttribute('uv', new BufferAttribute(new Float32Array([0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1]), 2));
+    this.picture.visible = this.picture.frustumCulled = false;
     [this.fan, this.edge, this.rim, this.dot].forEach((part, i) => {
       part.frustumCulled = false;
       part.renderOrder = 30 + i;
     });
-    this.group.add(this.fan, this.edge, this.rim, this.dot);
+    this.group.add(this.fan, this.edge, this.rim, this.dot, this.picture);
     this.group.visible = false;
   }
 
@@ -30,10 +35,22 @@ export class CameraMarker {
     for (const part of [this.fan, this.edge, this.dot]) part.material.color.copy(this.colour);
   }
 
+  /** Takes a picture over and frees the one before. */
+  setPicture(bitmap: ImageBitmap): void {
+    const { material } = this.picture;
+    (material.map?.image as ImageBitmap | undefined)?.close();
+    material.map?.dispose();
+    material.map = new CanvasTexture(bitmap);
+    material.map.colorSpace = SRGBColorSpace;
+    material.map.flipY = false;
+    material.needsUpdate = true;
+  }
+
   /** `scale`: CSS pixels per metre at the camera; sizes stay the same on screen while one zooms. */
   place(pose: PoseValue, camera: CameraModel | null, scale: number, solid: boolean): void {
     this.group.visible = true;
-    const reach = Math.max(solid ? 0.35 : 0, REACH_PX / scale);
+    const reach = (solid ? 1.6 : 1) * (REACH_PX / scale);
+    this.picture.visible = solid && this.picture.material.map !== null;
     const corners = cornerRays(camera).map(([x, y]): Vector => worldFromCamera(pose, [x * reach, y * reach, reach]));
     const tip: Vector = [pose.x, pose.y, pose.z];
     this.setFan(tip, corners);
@@ -51,6 +68,7 @@ export class CameraMarker {
     const lines = [tip, a, tip, b, tip, c, tip, d, a, b, b, c, c, d, d, a].flat();
     setPositions(this.fan.geometry, triangles);
     setPositions(this.edge.geometry, lines);
+    setPositions(this.picture.geometry, [a, b, c, a, c, d].flat());
   }
 }
 

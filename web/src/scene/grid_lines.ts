@@ -38,10 +38,11 @@ export class GridLines {
     if (uStrength) uStrength.value = light ? 0.11 : 0.13;
   }
 
-  update(view: Viewport, solid: boolean): void {
+  update(view: Viewport, solid: boolean, ground: number): void {
     const rect = visibleRect(view);
     const grow = solid ? 4 : 1;
-    this.mesh.position.set(view.x, view.y, 0.0005);
+    this.mesh.material.depthTest = solid; // behind what stands on the ground
+    this.mesh.position.set(view.x, view.y, ground + 0.003);
     this.mesh.scale.set((rect.xMax - rect.xMin) * grow, (rect.yMax - rect.yMin) * grow, 1);
     const { uStep, uPixel } = this.mesh.material.uniforms;
     if (uStep) uStep.value = gridStep(view);

@@ -23,7 +23,7 @@ export function mapUniforms(): MapUniforms {
     uClasses: { value: false }, uByHeight: { value: false }, uMarkConflict: { value: true }, uRamp: { value: ramp },
     uWeights: { value: floats() }, uSeenFrom: { value: floats() }, uLayerColours: { value: Array.from({ length: MAX_LAYERS }, () => new Color()) },
     uUnknown: { value: new Color() }, uFree: { value: new Color() }, uOccupied: { value: new Color() }, uConflict: { value: new Color() },
-    uHatch: { value: new Color() }, uPixelRatio: { value: 1 }, uOnly: { value: -1 }, uHeight: { value: 0 },
+    uHatch: { value: new Color() }, uPixelRatio: { value: 1 },
   };
 }
 
@@ -133,7 +133,7 @@ void main() {
   if (!covers) shown = unknownColour();
   else if (!seen && mod(gl_FragCoord.x + gl_FragCoord.y, 8.0 * uPixelRatio) < uPixelRatio) shown = mix(shown, uUnknown, 0.55);
   if (uMarkConflict && conflict >= uConflictMark) shown = conflictHatch(shown);
-  colour = vec4(shown, 1.0);
+  colour = vec4(shown, uOnly >= 0 ? 0.55 : 1.0);
 }
 `;
 
@@ -153,6 +153,7 @@ void main() {  // coarser tiles lie a little lower, so that finer ones cover the
 export function tileMaterial(uniforms: MapUniforms, page: DataArrayTexture): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { ...uniforms, uPlanes: { value: page } },
+    transparent: uniforms['uOnly']?.value !== -1,
   });
 }
 

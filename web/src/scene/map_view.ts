@@ -2,18 +2,19 @@
 
 import { Color, Mesh, Scene, WebGLRenderer } from 'three';
 import { heading } from '../geometry';
+import { ImageStream } from '../gen/flogmap/v1/stream_pb';
 import type { LiveMap } from '../live_map';
 import { classColours, cssColour, type Theme } from '../palette';
 import type { Settings } from '../settings';
 import { Signal, type Store } from '../signal';
-import { tilesToDraw, type Tile, type TileKey } from '../tile_store';
-import { fit, levelFor, pan, visibleRect, wrapAngle, zoomAt, type Point, type Rect, type Viewport } from '../viewport';
+import type { Tile, TileKey } from '../tile_store';
+import { fit, pan, wrapAngle, zoomAt, type Point, type Rect, type Viewport } from '../viewport';
 import { CameraMarker } from './camera_marker';
 import { GridLines } from './grid_lines';
 import { applySettings, groundMaterial, mapUniforms, type MapUniforms } from './map_material';
 import { PathLine } from './path_line';
-import { TileMeshes, unitQuad } from './tile_meshes';
-import { TilePages } from './tile_pages';
+import { unitQuad } from './tile_meshes';
+import { TileScene } from './tile_scene';
 import { ViewCamera } from './view_camera';
 
 const FIT_MARGIN_PX = 48;
@@ -28,7 +29,6 @@ export class MapView {
   /** The part of the world that is shown has changed. */
   readonly moved = new Signal<Viewport>();
   readonly canvas: HTMLCanvasElement;
-  shown: readonly Tile[] = [];
 
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
@@ -36,9 +36,7 @@ export class MapView {
   private readonly path = new PathLine();
   private readonly marker = new CameraMarker();
   private readonly grid = new GridLines();
-  private pages: TilePages | null = null;
-  private tiles: TileMeshes | null = null;
-  private readonly dirty = new Map<string, Tile>();
+  private readonly tiles: TileScene;
   private scheduled = false;
   private stale = { tiles: true, path: true, settings: true };
   private target: Viewport | null = null;
@@ -51,18 +49,19 @@ export class MapView {
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     holder.prepend(this.canvas);
+    this.tiles = new TileScene(this.renderer, live, this.uniforms);
     const ground = new Mesh(unitQuad(), groundMaterial(this.uniforms));
     ground.frustumCulled = false;
     ground.renderOrder = -10;
-    this.scene.add(ground, this.grid.mesh, this.path.group, this.marker.group);
+    this.scene.add(ground, this.tiles.group, this.grid.mesh, this.path.group, this.marker.group);
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
     this.listen();
   }
 
-  /** What stays the same: the marker of the person's own moves. */
-  get wasMoved(): boolean {
-    return this.touchedByUser;
+  /** The tiles on screen. */
+  get shown(): readonly Tile[] {
+    return this.tiles.shown;
   }
 
   setTheme(theme: Theme): void {
@@ -136,6 +135,7 @@ export class MapView {
       this.stale.path = this.stale.settings = this.stale.tiles = true;
       this.requestDraw();
     });
+    this.live.imageChanged.on((stream) => this.takePicture(stream));
     this.canvas.addEventListener('webglcontextrestored', () => this.begin());
   }
 
@@ -145,24 +145,24 @@ export class MapView {
   }
 
   private begin(): void {
-    this.tiles?.dispose();
-    this.pages?.dispose();
-    if (this.tiles) this.scene.remove(this.tiles.group);
-    this.pages = new TilePages(this.renderer, Math.max(1, this.live.info?.layers.length ?? 1));
-    this.tiles = new TileMeshes(this.pages, this.uniforms);
-    this.scene.add(this.tiles.group);
-    this.dirty.clear();
-    for (const tile of this.live.tiles.all()) this.dirty.set(`${tile.level}/${tile.x}/${tile.y}`, tile);
+    this.tiles.begin();
     this.marker.group.visible = false;
     this.stale = { tiles: true, path: true, settings: true };
     this.requestDraw();
   }
 
+  /** The live picture for the frustum. */
+  private takePicture(stream: ImageStream): void {
+    const image = stream === ImageStream.LEFT && this.settings.get().solid ? this.live.images.get(stream) : undefined;
+    if (!image) return;
+    void createImageBitmap(new Blob([image.data], { type: image.mediaType })).then((bitmap) => {
+      this.marker.setPicture(bitmap);
+      this.requestDraw();
+    }, () => {}); // an unreadable picture is told by the camera panel
+  }
+
   private changeTiles(applied: readonly TileKey[], removed: readonly TileKey[]): void {
-    for (const key of applied) {
-      const tile = this.live.tiles.get(key);
-      if (tile) this.dirty.set(`${key.level}/${key.x}/${key.y}`, tile);
-    }
+    this.tiles.change(applied);
     this.release(removed);
     const rect = this.touchedByUser || this.settings.get().follow !== 'free' ? undefined : this.mapRect();
     if (rect) this.glideTo(fit(this.viewport, rect, FIT_MARGIN_PX));
@@ -171,10 +171,7 @@ export class MapView {
 
   /** Frees what the tiles hold on the graphics card. */
   release(keys: readonly TileKey[]): void {
-    for (const key of keys) {
-      this.dirty.delete(`${key.level}/${key.x}/${key.y}`);
-      this.pages?.release(key);
-    }
+    this.tiles.release(keys);
     this.stale.tiles = true;
   }
 
@@ -214,11 +211,11 @@ export class MapView {
     if (seconds > 0) this.fps = this.fps * 0.9 + 0.1 / Math.max(seconds, 1e-3);
     this.lastFrame = now;
     this.glide(seconds);
-    this.upload();
+    this.tiles.upload();
     this.refresh();
     this.eye.solid = this.settings.get().solid;
     this.eye.update(this.viewport);
-    this.grid.update(this.viewport, this.eye.solid);
+    this.grid.update(this.viewport, this.eye.solid, this.eye.solid ? (this.live.info?.layers[0]?.zMin ?? 0) : 0);
     this.renderer.render(this.scene, this.eye.camera);
     this.drawn.emit(this.viewport);
   }
@@ -236,20 +233,11 @@ export class MapView {
     this.setViewport(this.target ? next : { ...to, width: from.width, height: from.height });
   }
 
-  private upload(): void {
-    if (!this.pages) return;
-    for (const tile of this.dirty.values()) this.pages.upload(tile);
-    this.dirty.clear();
-  }
-
   private refresh(): void {
     const settings = this.settings.get();
     const { info } = this.live;
     if (this.stale.settings) this.refreshColours(settings);
-    if (this.stale.tiles && info && this.tiles) {
-      this.shown = tilesToDraw(this.live.tiles, visibleRect(this.viewport), levelFor(this.viewport, info.cellSize, info.levels, this.renderer.getPixelRatio()), info.cellSize);
-      this.tiles.show(this.shown, info.cellSize);
-    }
+    if (this.stale.tiles && info) this.tiles.show(this.viewport, info, settings);
     if (this.stale.path) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
     this.stale = { tiles: false, path: false, settings: false };
     const pose = this.live.pose;

@@ -16,8 +16,16 @@ export function unitQuad(): InstancedBufferGeometry {
 export class TileMeshes {
   readonly group = new Group();
   private meshes: Mesh<BufferGeometry, ShaderMaterial>[] = [];
+  private readonly uniforms: MapUniforms;
 
-  constructor(private readonly pages: TilePages, private readonly uniforms: MapUniforms) {}
+  /** `only`: paint this layer alone, translucent. */
+  constructor(private readonly pages: TilePages, uniforms: MapUniforms, only = -1) {
+    this.uniforms = { ...uniforms, uOnly: { value: only }, uHeight: { value: 0 } };
+  }
+
+  setHeight(metres: number): void {
+    if (this.uniforms['uHeight']) this.uniforms['uHeight'].value = metres;
+  }
 
   /** Takes the tiles that are to be seen, in the order of drawing. */
   show(tiles: readonly Tile[], cellSize: number): void {
