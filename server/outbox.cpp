@@ -35,7 +35,7 @@ void Outbox::subscribe(const Subscribe& wish, const ServedMap& map) {
   if (!wish.features) features_ = nullptr;
   for (Bytes& image : images_) image = nullptr;
   if (subscribed_ && wish.tiles == choice_) return;
-  if (subscribed_) resumed_revision_ = 0;  // it has everything, but in other planes
+  if (subscribed_) resumed_revision_.reset();  // it has everything, but in other planes
   choice_ = wish.tiles;
   subscribed_ = true;
   begin_snapshot(map);
@@ -46,8 +46,8 @@ void Outbox::begin_snapshot(const ServedMap& map) {
   needs_.resize(board.num_slots(), Need::none);
   std::uint64_t num_tiles = 0;
   for (Slot slot = 0; slot < board.num_slots(); ++slot) {
-    if (board.revision(slot) <= resumed_revision_) continue;
-    if (!board.exists(slot) && resumed_revision_ == 0) continue;
+    const bool known = resumed_revision_ ? board.revision(slot) <= *resumed_revision_ : !board.exists(slot);
+    if (known) continue;
     if (needs_[slot] != Need::round) need(slot);
     ++num_tiles;
   }
@@ -70,18 +70,16 @@ void Outbox::look_at(const Viewport& viewport, const ServedMap& map) {
 
 void Outbox::forget(const std::vector<TileKey>& keys, const ServedMap& map) {
   needs_.resize(map.board().num_slots(), Need::none);
-  bool withdrawn = false;
   for (const TileKey& key : keys) {
     const auto slot = map.board().find(key);
-    if (!slot || visible(map, *slot)) continue;
-    withdrawn = withdrawn || needs_[*slot] == Need::waiting || needs_[*slot] == Need::round;
-    needs_[*slot] = Need::forgotten;
+    // One that waits to be sent stays: an older state of it may be on the line, and would be kept.
+    if (!slot || needs_[*slot] != Need::none) continue;
+    if (subscribed_ && visible(map, *slot)) {
+      need(*slot);
+    } else {
+      needs_[*slot] = Need::forgotten;
+    }
   }
-  if (!withdrawn) return;
-  const auto gone = [this](Slot slot) { return needs_[slot] == Need::forgotten; };
-  std::erase_if(waiting_, gone);
-  std::erase_if(round_, gone);
-  num_sorted_ = 0;
 }
 
 bool Outbox::acknowledge(std::uint64_t bytes, Time now) {
@@ -112,7 +110,7 @@ void Outbox::reset(const ServedMap& map) {
   waiting_.clear();
   round_.clear();
   num_sorted_ = 0;
-  resumed_revision_ = 0;
+  resumed_revision_.reset();
   trajectory_sent_ = 0;
   rewrite_reason_.reset();
   pose_ = features_ = nullptr;

@@ -87,7 +87,7 @@ class Outbox {
   bool subscribed_ = false;
   TileChoice choice_;
   std::optional<Viewport> viewport_;
-  std::uint64_t resumed_revision_ = 0;
+  std::optional<std::uint64_t> resumed_revision_;  // it has all tiles as of this; nothing: it has none
 
   std::vector<Need> needs_;     // by slot
   std::vector<Slot> waiting_;   // changed since the round began

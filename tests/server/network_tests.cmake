@@ -8,3 +8,6 @@ flogmap_target(hub_demo EXECUTABLE SOURCES hub_demo.cpp PRIVATE hub synthetic_wa
 flogmap_target(wire_samples SOURCES wire_samples.cpp PUBLIC board PRIVATE proto)
 flogmap_target(make_wire_samples EXECUTABLE SOURCES make_wire_samples.cpp PRIVATE wire_samples)
 flogmap_test(wire_tests SOURCES wire_golden_test.cpp LINK wire_samples board proto nlohmann_json::nlohmann_json)
+
+flogmap_target(tile_mirror SOURCES tile_mirror.cpp PUBLIC board PRIVATE proto)
+flogmap_test(outbox_tests SOURCES outbox_law_test.cpp LINK tile_mirror board proto)
