@@ -13,7 +13,8 @@ namespace {
 
 TEST(SimulatedSource, TheSameSeedGivesTheSameFramesAndAnotherSeedOthers) {
   Scene scene = testing::small_scene();
-  scene.sensor = {.noise_grey = 2, .blur_px = 0.5, .right_gain = 1.1, .drop_probability = 0.2, .skew_s = 0.01};
+  scene.sensor = {
+      .noise_grey = 2, .blur_px = 0.5, .right_gain = 1.1, .drop_probability = 0.2, .skew_s = 0.01};
   SimulatedSource a("sim:a", scene, 7), b("sim:b", scene, 7), c("sim:c", scene, 8);
   bool any_difference = false;
   for (int i = 0; i < 10; ++i) {

@@ -8,7 +8,7 @@ namespace flogmap::testing {
 inline Scene small_scene() {
   return parse_scene(R"({
     "camera": {"width_px": 320, "height_px": 240, "focal_px": 210, "baseline_m": 0.12, "rate_hz": 10},
-    "texel_m": 0.008,
+    "texel_m": 0.012,
     "materials": {"rough": {"pattern": "speckle", "size_m": 0.1}, "wall": {"pattern": "plaster"},
                   "floor": {"pattern": "planks", "size_m": 0.15}},
     "solids": [

@@ -53,7 +53,7 @@ TEST(Walk, TheCameraStandsUprightUpToItsRoll) {
   for (double t = 0; t < walk.round_s(); t += 0.5) {
     const Eigen::Matrix3d axes = walk.pose(t).linear();
     EXPECT_TRUE((axes.transpose() * axes).isIdentity(1e-12));
-    EXPECT_LT(axes(2, 1), -0.8);  // y of the camera points down
+    EXPECT_LT(axes(2, 1), -0.8);                                     // y of the camera points down
     EXPECT_LT(std::abs(axes(2, 0)), std::sin(8.1 * 3.14159 / 180));  // rolled by at most 8 degrees
   }
 }
