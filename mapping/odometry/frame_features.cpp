@@ -1,5 +1,6 @@
 #include "mapping/odometry/frame_features.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -30,18 +31,24 @@ float disparity_near(const Image<float>& disparity, const Eigen::Vector2f& px) {
 
 }  // namespace
 
-FrameFeatures extract_features(const StereoCamera& camera, const RectifiedFrame& frame,
+FrameFeatures extract_features(const StereoCamera& camera, const Image<std::uint8_t>& left,
                                const DisparityImage& disparity, const CornerOptions& options) {
   FrameFeatures features;
-  for (const Corner& corner : detect_corners(frame.left, options)) {
+  for (const Corner& corner : detect_corners(left, options)) {
     const float d = disparity_near(disparity.px, corner.px);
     if (std::isnan(d)) continue;
     features.corners.push_back(corner);
     features.disparity_px.push_back(d);
     features.points.push_back(triangulate(camera, corner.px.x(), corner.px.y(), d));
   }
-  features.upright = describe(frame.left, features.corners, PatchFrame::upright);
+  features.upright = describe(left, features.corners, PatchFrame::upright);
   return features;
+}
+
+std::vector<float> scales_by_nearness(const FrameFeatures& features, float disparity_of_scale_1) {
+  std::vector<float> scales;
+  for (const float d : features.disparity_px) scales.push_back(std::clamp(d / disparity_of_scale_1, 0.4F, 4.0F));
+  return scales;
 }
 
 std::optional<double> refine_disparity(const RectifiedFrame& frame, const Eigen::Vector2d& px,

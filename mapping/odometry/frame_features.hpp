@@ -21,8 +21,12 @@ struct FrameFeatures {
   std::vector<Descriptor> upright;
 };
 
-[[nodiscard]] FrameFeatures extract_features(const StereoCamera& camera, const RectifiedFrame& frame,
+[[nodiscard]] FrameFeatures extract_features(const StereoCamera& camera, const Image<std::uint8_t>& left,
                                              const DisparityImage& disparity, const CornerOptions& options);
+
+/// Scales for describe() that make patches the same size in metres, not in pixels: half and twice the distance
+/// still look alike. `disparity_of_scale_1` is where the scale is 1.
+[[nodiscard]] std::vector<float> scales_by_nearness(const FrameFeatures& features, float disparity_of_scale_1);
 
 /// The disparity at a corner to a fraction of a pixel: the patch around it is looked for in the right picture,
 /// from the dense disparity. Nothing if it is not found there within 1.5 px, or too near to the border.

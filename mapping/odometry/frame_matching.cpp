@@ -8,13 +8,6 @@
 namespace flogmap {
 namespace {
 
-/// Patches of the same size in metres, not in pixels: half and twice the distance still look alike.
-std::vector<float> scales_by_nearness(const FrameFeatures& features, float disparity_of_scale_1) {
-  std::vector<float> scales;
-  for (const float d : features.disparity_px) scales.push_back(std::clamp(d / disparity_of_scale_1, 0.4F, 4.0F));
-  return scales;
-}
-
 float median(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

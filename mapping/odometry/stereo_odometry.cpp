@@ -52,7 +52,7 @@ class StereoOdometry::Tracker {
         map_(camera, options.max_key_frames, options.max_landmarks, options.placement.motion.disparity_sigma_px) {}
 
   Tracking track(const RectifiedFrame& frame, const DisparityImage& disparity) {
-    Current current{frame, extract_features(camera_, frame, disparity, options_.corners)};
+    Current current{frame, extract_features(camera_, frame.left, disparity, options_.corners)};
     Tracking tracking;
     for (const Corner& corner : current.features.corners) tracking.corners_px.push_back(corner.px);
     if (static_cast<int>(current.features.corners.size()) < options_.min_corners) {

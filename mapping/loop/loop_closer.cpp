@@ -1,0 +1,152 @@
+#include "mapping/loop/loop_closer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "mapping/triangulate.hpp"
+
+namespace flogmap {
+namespace {
+
+constexpr int kConfirmWithinViews = 5;
+constexpr double kSamePlace_m = 0.1;    // two meetings say the same if their corrections differ less
+constexpr double kSameTurn_rad = 0.035;
+
+double angle_of(const SE3& motion) { return Eigen::AngleAxisd(motion.linear()).angle(); }
+
+/// Patches are compared at the size that they have at this distance: as far away as ten baselines.
+float disparity_of_scale_1(const StereoCamera& camera) { return static_cast<float>(camera.focal_px / 20); }
+
+/// Odometry's step as uncertain as experience says: a share of the way, a share of the turn, and a floor.
+Covariance6 step_covariance(const SE3& step, bool after_loss) {
+  const double metres = after_loss ? 1 : 0.002 + 0.005 * step.translation().norm();
+  const double radians = after_loss ? 1 : 0.0005 + 0.002 * (step.translation().norm() + angle_of(step));
+  Eigen::Matrix<double, 6, 1> sigma;
+  sigma << metres, metres, metres, radians, radians, radians;
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
+}  // namespace
+
+LoopCloser::LoopCloser(const LoopOptions& options, const StereoCamera& camera) : options_(options), camera_(camera) {}
+
+std::vector<BinaryPatch> LoopCloser::patches_of(const Remembered& view) const {
+  const auto scales = scales_by_nearness(view.features, disparity_of_scale_1(camera_));
+  std::vector<BinaryPatch> patches;
+  for (const Descriptor& d : describe(view.left, view.features.corners, PatchFrame::own_orientation, scales)) {
+    patches.push_back(binary_patch(d));
+  }
+  return patches;
+}
+
+void LoopCloser::remember(const View& view, int segment) {
+  Remembered now{.timestamp_ns = view.timestamp_ns,
+                 .segment = segment,
+                 .world_from_camera = view.world_from_camera,
+                 .path_m = 0,
+                 .left = view.left,
+                 .features = extract_features(camera_, view.left, view.disparity, options_.corners)};
+  SE3 corrected = view.world_from_camera;
+  if (!views_.empty()) {
+    const Remembered& last = views_.back();
+    const SE3 step = last.world_from_camera.inverse() * now.world_from_camera;
+    now.path_m = last.path_m + step.translation().norm();
+    corrected = corrected_.back() * step;
+  }
+  views_.push_back(std::move(now));
+  corrected_.push_back(corrected);
+}
+
+void LoopCloser::add_odometry_edge() {
+  const int to = static_cast<int>(views_.size()) - 1;
+  if (to == 0) return;
+  const Remembered &a = views_[to - 1], &b = views_[to];
+  const SE3 step = a.world_from_camera.inverse() * b.world_from_camera;
+  edges_.push_back({to - 1, to, step, step_covariance(step, a.segment != b.segment), false});
+}
+
+std::optional<LoopCorrection> LoopCloser::add(const View& view, int segment) {
+  remember(view, segment);
+  add_odometry_edge();
+  const auto patches = patches_of(views_.back());
+  const int num_old = static_cast<int>(views_.size()) - 1 - options_.min_views_apart;
+  std::optional<Meeting> best;
+  for (const PlaceCandidate& c : index_.query(patches, std::max(num_old, 0), options_.max_candidates)) {
+    if (c.votes < options_.min_votes) break;
+    const auto meeting = meet(c.view);
+    if (meeting && plausible(*meeting) && (!best || meeting->num_inliers > best->num_inliers)) best = meeting;
+  }
+  index_.add(patches);
+  if (!best) return std::nullopt;
+  if (best->num_inliers >= options_.many_inliers || confirmed(*best)) return close(*best);
+  pending_ = best;
+  return std::nullopt;
+}
+
+/// The same test as between frames: a consistent set of matches under any motion, then all matches that fit it.
+std::optional<LoopCloser::Meeting> LoopCloser::meet(int earlier_view) const {
+  const Remembered &earlier = views_[earlier_view], &now = views_.back();
+  std::optional<Meeting> best;
+  for (const PatchFrame patches : {PatchFrame::upright, PatchFrame::own_orientation}) {
+    const auto match = match_frames(camera_, {now.left, now.features}, {earlier.left, earlier.features}, patches,
+                                    options_.matching, options_.consistency);
+    if (!match) continue;
+    std::vector<MotionPoint> points;
+    for (const IndexPair& pair : match->pairs) {
+      const Eigen::Vector3d& p = now.features.points[pair.key];
+      points.push_back({p, point_covariance(camera_, p, options_.motion.image_sigma_px),
+                        project(camera_, earlier.features.points[pair.current])});
+    }
+    const auto motion = refine_motion(camera_, points, match->current_from_key, options_.motion);
+    if (!motion || motion->num_inliers < options_.min_inliers) continue;
+    if (best && best->num_inliers >= motion->num_inliers) continue;
+    best = Meeting{static_cast<int>(views_.size()) - 1, earlier_view, motion->current_from_key, motion->covariance,
+                   motion->num_inliers};
+  }
+  return best;
+}
+
+/// The loop's own certainty, and whether odometry can have been that far off.
+bool LoopCloser::plausible(const Meeting& meeting) const {
+  if (meeting.covariance.diagonal().head<3>().sum() > options_.max_sigma_m * options_.max_sigma_m) return false;
+  const Remembered &earlier = views_[meeting.earlier_view], &now = views_[meeting.view];
+  const SE3 by_odometry = corrected_[meeting.earlier_view].inverse() * corrected_[meeting.view];
+  const SE3 gap = meeting.earlier_from_view.inverse() * by_odometry;
+  const double path_m = now.path_m - earlier.path_m;
+  double metres = options_.drift_m + options_.drift_share * path_m;
+  double radians = 0.1 + options_.drift_rad_per_m * path_m;
+  for (int i = meeting.earlier_view + 1; i <= meeting.view; ++i) {
+    if (views_[i].segment == views_[i - 1].segment) continue;
+    metres += options_.speed_m_s * static_cast<double>(views_[i].timestamp_ns - views_[i - 1].timestamp_ns) * 1e-9;
+    radians = std::numbers::pi;
+  }
+  return gap.translation().norm() <= metres && angle_of(gap) <= radians;
+}
+
+/// What this meeting would do to the pose of its view, in the world.
+SE3 LoopCloser::implied_correction(const Meeting& meeting) const {
+  return corrected_[meeting.earlier_view] * meeting.earlier_from_view * views_[meeting.view].world_from_camera.inverse();
+}
+
+bool LoopCloser::confirmed(const Meeting& meeting) const {
+  if (!pending_ || meeting.view - pending_->view > kConfirmWithinViews) return false;
+  const Eigen::Vector3d place = views_[meeting.view].world_from_camera.translation();
+  const SE3 a = implied_correction(meeting), b = implied_correction(*pending_);
+  return (a * place - b * place).norm() <= kSamePlace_m && angle_of(a.inverse() * b) <= kSameTurn_rad;
+}
+
+LoopCorrection LoopCloser::close(const Meeting& meeting) {
+  edges_.push_back({meeting.earlier_view, meeting.view, meeting.earlier_from_view, meeting.covariance, true});
+  if (views_[meeting.view].segment != views_[meeting.earlier_view].segment) {
+    corrected_.back() = corrected_[meeting.earlier_view] * meeting.earlier_from_view;
+  }
+  corrected_ = optimise_poses(std::move(corrected_), edges_, options_.graph);
+  pending_.reset();
+  ++num_loops_;
+  return {corrected_, corrected_.back() * views_.back().world_from_camera.inverse(), meeting.view,
+          meeting.earlier_view, meeting.num_inliers};
+}
+
+}  // namespace flogmap

@@ -1,0 +1,92 @@
+// Has this view been here before? Then all poses are corrected. HOUSE rule: odometry is never told.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/loop/place_index.hpp"
+#include "mapping/loop/pose_graph.hpp"
+#include "mapping/odometry/frame_features.hpp"
+#include "mapping/odometry/frame_matching.hpp"
+#include "mapping/odometry/motion_solver.hpp"
+#include "mapping/view.hpp"
+
+namespace flogmap {
+
+struct LoopOptions {
+  CornerOptions corners{.max_corners = 400};
+  MatchingOptions matching{.min_consistent = 15};
+  ConsistencyOptions consistency{.image_sigma_px = 0.4, .max_turn_rad = std::nullopt};
+  MotionOptions motion{.image_sigma_px = 0.5, .disparity_sigma_px = 0.3};
+  PoseGraphOptions graph;
+  int min_views_apart = 12;   // nearer views overlap anyway
+  int min_votes = 15;         // of the place index
+  int max_candidates = 3;     // that are looked at closely
+  int min_inliers = 25;       // two views in a row that agree,
+  int many_inliers = 60;      // or one with that many
+  double max_sigma_m = 0.05;  // of the measured motion
+  double drift_share = 0.03;  // odometry is off by at most this share of the path, and
+  double drift_m = 0.15;      // this much: a loop that says more is false
+  double drift_rad_per_m = 0.02;
+  double speed_m_s = 1.5;     // and while it was lost, the camera may have moved as fast as this
+};
+
+/// The views' poses once a loop is closed.
+struct LoopCorrection {
+  std::vector<SE3> world_from_camera;  // of every view added so far, in order
+  SE3 map_from_odometry = SE3::Identity();  // takes the uncorrected poses of later frames into the corrected map
+  int view = 0;                        // the newest,
+  int earlier_view = 0;                // the one that it meets again
+  int num_inliers = 0;
+};
+
+/// Takes mapped views in order. Deterministic; no thread, no clock. It never sees other stages' data.
+class LoopCloser {
+ public:
+  LoopCloser(const LoopOptions& options, const StereoCamera& camera);
+
+  /// `view.world_from_camera` as odometry (and the level start) have it, uncorrected. `segment` changes when
+  /// odometry went on after a loss without knowing where (Tracking::segment). The corrected poses if this view
+  /// closes a loop, else nothing.
+  [[nodiscard]] std::optional<LoopCorrection> add(const View& view, int segment = 0);
+
+  [[nodiscard]] int num_loops() const { return num_loops_; }
+
+ private:
+  struct Remembered {
+    std::int64_t timestamp_ns = 0;
+    int segment = 0;
+    SE3 world_from_camera;  // uncorrected
+    double path_m = 0;      // walked until here
+    Image<std::uint8_t> left;
+    FrameFeatures features;
+  };
+  struct Meeting {
+    int view = 0, earlier_view = 0;
+    SE3 earlier_from_view;
+    Covariance6 covariance;
+    int num_inliers = 0;
+  };
+
+  void remember(const View& view, int segment);
+  void add_odometry_edge();
+  [[nodiscard]] std::vector<BinaryPatch> patches_of(const Remembered& view) const;
+  [[nodiscard]] std::optional<Meeting> meet(int earlier_view) const;
+  [[nodiscard]] bool plausible(const Meeting& meeting) const;
+  [[nodiscard]] bool confirmed(const Meeting& meeting) const;
+  [[nodiscard]] SE3 implied_correction(const Meeting& meeting) const;
+  [[nodiscard]] LoopCorrection close(const Meeting& meeting);
+
+  LoopOptions options_;
+  StereoCamera camera_;
+  PlaceIndex index_;
+  std::vector<Remembered> views_;
+  std::vector<SE3> corrected_;  // world_from_camera
+  std::vector<PoseEdge> edges_;
+  std::optional<Meeting> pending_;  // waits for a second view that says the same
+  int num_loops_ = 0;
+};
+
+}  // namespace flogmap
