@@ -37,7 +37,7 @@ class FakeClock implements Clock {
       const next = this.timers.filter(({ at }) => at <= end).sort((a, b) => a.at - b.at)[0];
       if (!next) break;
       this.timers = this.timers.filter((timer) => timer !== next);
-      this.time = next.at;
+      this.time = Math.max(this.time, next.at);
       next.action();
     }
     this.time = end;
@@ -186,6 +186,15 @@ describe('connection', () => {
     clock.pass(DEAD_AFTER_MS + 2 * PING_EVERY_MS);
     expect(states.some((state) => state.phase === 'live')).toBe(false);
     expect(sockets[0]?.closed).toBe(true);
+    expect(states.some((state) => state.phase === 'offline')).toBe(true);
+  });
+
+  it('does not take its own sleep for the server’s silence', () => {
+    comeUp();
+    clock.time += 60000; // a laptop's lid: no timer ran
+    clock.pass(1);
+    expect(connection.state.phase).not.toBe('offline');
+    clock.pass(DEAD_AFTER_MS + 2 * PING_EVERY_MS); // but silence after it counts
     expect(states.some((state) => state.phase === 'offline')).toBe(true);
   });
 

@@ -61,6 +61,7 @@ export class Connection {
   private snapshot = { total: 0, done: 0 };
   private lastHeard = 0;
   private ping = { nonce: 0n, sentAt: 0, open: false, roundTrip: 0 };
+  private watchDue = 0;
   private lostAt = 0; // when the page stopped being live
   private farewell: { reason: string; retryMs: number } | null = null;
   private subscription: MessageInitShape<typeof SubscribeSchema> = {};
@@ -84,7 +85,7 @@ export class Connection {
     this.dropSocket();
     if (this.current.phase !== 'offline') this.enter({ phase: 'connecting' });
     const number = ++this.number;
-    Object.assign(this, { bytesTaken: 0, farewell: null, lastHeard: this.parts.clock.now() });
+    Object.assign(this, { bytesTaken: 0, farewell: null, watchDue: 0, lastHeard: this.parts.clock.now() });
     this.ping = { nonce: 0n, sentAt: 0, open: false, roundTrip: 0 };
     const socket = this.parts.openSocket();
     socket.binaryType = 'arraybuffer';
@@ -193,13 +194,16 @@ export class Connection {
   private watch(): void {
     this.cancelTimer();
     const now = this.parts.clock.now();
+    if (this.watchDue > 0 && now - this.watchDue > PING_EVERY_MS) this.lastHeard = now; // it was us who slept
     if (now - this.lastHeard > DEAD_AFTER_MS) return this.lost('no answer');
     if (this.ping.open) this.showLag(now - this.ping.sentAt);
     else {
       this.ping = { ...this.ping, nonce: this.ping.nonce + 1n, sentAt: now, open: true };
       this.send({ case: 'ping', value: { nonce: this.ping.nonce } });
     }
-    this.cancelTimer = this.parts.clock.after(this.ping.open ? PING_EVERY_MS / 2 : PING_EVERY_MS, () => this.watch());
+    const wait = this.ping.open ? PING_EVERY_MS / 2 : PING_EVERY_MS;
+    this.watchDue = now + wait;
+    this.cancelTimer = this.parts.clock.after(wait, () => this.watch());
   }
 
   private ponged(): void {

@@ -1,6 +1,7 @@
 // Where everything stands on the page.
 
 import { appearancePanel } from './panels/appearance';
+import { chartsPanel } from './panels/charts';
 import { staleBanner } from './panels/connection_chip';
 import { header } from './panels/header';
 import { showHelp } from './panels/help';
@@ -13,6 +14,7 @@ import { overlay, type Overlay } from './panels/overlay';
 import { picturesPanel } from './panels/pictures';
 import { statusPanel } from './panels/status';
 import { tabs } from './panels/tabs';
+import { timeline } from './panels/timeline';
 import { toolbar } from './panels/toolbar';
 import type { Page } from './page';
 import { h } from './ui/dom';
@@ -23,9 +25,9 @@ export function layout(page: Page, map: HTMLElement, share: () => void): Overlay
   map.classList.add('map');
   page.view.canvas.setAttribute('aria-label', 'Map. Arrow keys move it, plus and minus zoom.');
   page.view.canvas.setAttribute('role', 'application');
-  map.append(over.element, emptyState(page), legend(page), mapCorner(page), toolbar(page), staleBanner(page), notices(page));
+  map.append(over.element, emptyState(page), legend(page), mapCorner(page), toolbar(page), timeline(page), staleBanner(page), notices(page));
   const left = h('aside', { class: 'side left', 'aria-label': 'Map and layers' }, layersPanel(page), appearancePanel(page));
-  const right = h('aside', { class: 'side right', 'aria-label': 'Camera, cell and status' }, picturesPanel(page), inspectorPanel(page), statusPanel(page, h('div', {})));
+  const right = h('aside', { class: 'side right', 'aria-label': 'Camera, cell and status' }, picturesPanel(page), inspectorPanel(page), statusPanel(page, chartsPanel(page)));
   document.body.append(header(page, { share, help: showHelp }), left, map, right, tabs(page));
   page.settings.watch(['leftPanel', 'rightPanel'], ({ leftPanel, rightPanel }) => {
     document.body.classList.toggle('no-left', !leftPanel);

@@ -16,7 +16,7 @@ export interface Evidence {
 }
 
 export const DEFAULT_THRESHOLD = 0.3; // on M: an obstacle from here on
-export const CONFLICT_MARK = 0.8; // conflict from here on is marked on the map
+export const CONFLICT_MARK = 0.9; // conflict from here on is marked on the map
 
 export function fuzzyAnd(operators: Operators, a: number, b: number): number {
   if (operators === 'minmax') return Math.min(a, b);

@@ -6,6 +6,7 @@ import { conflictValue, mapValue, motionValue, planningValue, styleValue, type E
 import { columnAt } from '../tile_store';
 import { h, setText } from '../ui/dom';
 import { iconButton, section } from '../ui/controls';
+import { layerName } from './layers';
 import type { Point } from '../viewport';
 
 interface LayerEvidence extends Evidence {
@@ -76,7 +77,7 @@ function layerBlock(operators: Operators, e: LayerEvidence): HTMLElement {
     ['Mm', 'safe for motion', motionValue(operators, E, O, K)], ['⚡', 'conflict', conflictValue(E, O, K)], ['Δ', 'changed lately', e.C],
   ] as const).map(([letter, name, value]) => h('span', { title: name }, h('b', {}, letter), ` ${value.toFixed(2)}`));
   return h('div', { class: 'cell-layer', 'data-layer': e.layer.id },
-    h('div', { class: 'cell-layer-head' }, h('span', {}, e.layer.name || `Layer ${e.layer.id}`), h('span', { class: 'rays' }, e.rays === undefined ? 'N …' : `N ${e.rays}`)),
+    h('div', { class: 'cell-layer-head' }, h('span', {}, layerName(e.layer)), h('span', { class: 'rays' }, e.rays === undefined ? 'N …' : `N ${e.rays}`)),
     ...bars, h('div', { class: 'cell-values' }, ...values));
 }
 

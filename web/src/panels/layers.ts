@@ -29,7 +29,7 @@ function layerRow(page: Page, layer: Layer, index: number, count: number): { row
   const change = (patch: { visible?: boolean; opacity?: number }): void => settings.set(withLayer(settings.get(), layer.id, patch));
   const dot = h('span', { class: 'layer-dot', 'aria-hidden': 'true' });
   dot.style.background = cssColour(layerColour(index, count, page.focus.get().theme));
-  const name = layer.name || `Layer ${layer.id}`;
+  const name = layerName(layer);
   const eye = iconButton('eye', `Hide ${name}`, () => change({ visible: !layerSetting(settings.get(), layer.id).visible }));
   const solo = iconButton('solo', `Show only ${name}`, () => toggleSolo(page, layer.id));
   const opacity = slider(`Opacity of ${name}`, { min: 0, max: 1, step: 0.05 }, (value) => `${Math.round(100 * value)} %`, (value) => change({ opacity: value }));
@@ -45,6 +45,9 @@ function layerRow(page: Page, layer: Layer, index: number, count: number): { row
   });
   return { row, stop };
 }
+
+/** The layer's name; a name that only repeats its heights is replaced by its number. */
+export const layerName = ({ id, name }: Layer): string => (name === '' || /^-?[\d.]+\s*[-–]/.test(name) ? `Layer ${id + 1}` : name);
 
 const formatHeight = (z: number): string => `${z.toFixed(2)} m`;
 

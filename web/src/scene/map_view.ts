@@ -239,6 +239,7 @@ export class MapView {
     if (this.stale.settings) this.refreshColours(settings);
     if (this.stale.tiles && info) this.tiles.show(this.viewport, info, settings);
     if (this.stale.path) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
+    this.path.setScale(this.viewport.scale);
     this.stale = { tiles: false, path: false, settings: false };
     const pose = this.live.pose;
     if (pose?.pose) {

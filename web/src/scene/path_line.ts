@@ -14,14 +14,17 @@ export const STATE_COLOURS: Record<TrackingState, Color> = {
   [TrackingState.WEAK]: new Color('#ffd23f'),
   [TrackingState.LOST]: new Color('#ff3b5c'),
 };
+const DOTS_APART_PX = 14;
 const MAX_POINTS = 20000; // of the line; longer paths are thinned
 
 export class PathLine {
   readonly group = new Group();
+  private points: readonly TrajectoryPoint[] = [];
+  private spacing = 0.1; // metres
   private readonly casing = new LineMaterial({ color: '#000000', linewidth: 4.5, transparent: true, opacity: 0.45, depthTest: false });
   private readonly ink = new LineMaterial({ vertexColors: true, linewidth: 2.5, transparent: true, depthTest: false });
   private readonly lines: [Line2, Line2] = [new Line2(new LineGeometry(), this.casing), new Line2(new LineGeometry(), this.ink)];
-  private readonly dots = new Points(new BufferGeometry(), new PointsMaterial({ size: 2.5, sizeAttenuation: false, color: '#ffffff', depthTest: false, transparent: true, opacity: 0.8 }));
+  private readonly dots = new Points(new BufferGeometry(), new PointsMaterial({ size: 3.5, sizeAttenuation: false, color: '#ffffff', depthTest: false, transparent: true, opacity: 0.8 }));
 
   constructor() {
     this.lines.forEach((line, i) => {
@@ -46,7 +49,16 @@ export class PathLine {
       line.geometry.setPositions(positions);
       line.geometry.setColors(colours);
     }
-    this.updateDots(points);
+    this.points = points;
+    this.updateDots();
+  }
+
+  /** `scale`: CSS pixels per metre. Dots of mapped views keep their distance, so that the line stays readable. */
+  setScale(scale: number): void {
+    const spacing = 2 ** Math.ceil(Math.log2(DOTS_APART_PX / scale));
+    if (spacing === this.spacing) return;
+    this.spacing = spacing;
+    this.updateDots();
   }
 
   /** Line width needs to know the screen; `solid` puts the path at its true height among things. */
@@ -59,11 +71,16 @@ export class PathLine {
     this.casing.color.set(colour);
   }
 
-  private updateDots(points: readonly TrajectoryPoint[]): void {
-    const mapped = points.filter((point) => point.mapped && point.pose);
-    const positions = new Float32Array(mapped.flatMap(({ pose }) => (pose ? [pose.x, pose.y, pose.z] : [])));
+  private updateDots(): void {
+    const positions: number[] = [];
+    let last: { x: number; y: number } | undefined;
+    for (const { mapped, pose } of this.points) {
+      if (!mapped || !pose || (last && Math.hypot(pose.x - last.x, pose.y - last.y) < this.spacing)) continue;
+      positions.push(pose.x, pose.y, pose.z);
+      last = pose;
+    }
     this.dots.geometry.dispose();
     this.dots.geometry = new BufferGeometry();
-    this.dots.geometry.setAttribute('position', new BufferAttribute(positions, 3));
+    this.dots.geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3));
   }
 }
