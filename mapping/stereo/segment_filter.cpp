@@ -1,7 +1,7 @@
 #include "mapping/stereo/segment_filter.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -9,20 +9,24 @@
 namespace flogmap {
 namespace {
 
-/// Disjoint sets of runs; the root of a set is its smallest member and knows how many pixels it has.
+/// Neighbours in a row that belong together; pixels [begin, end) of row y.
+struct Run {
+  int y, begin, end;
+};
+
+/// Disjoint sets of runs; the root of a set is its oldest member and knows how many pixels the set has.
 class Patches {
  public:
-  int add() {
+  int add(const Run& run) {
+    runs_.push_back(run);
+    num_px_.push_back(run.end - run.begin);
     parent_.push_back(static_cast<int>(parent_.size()));
-    num_px_.push_back(0);
     return parent_.back();
   }
 
-  void count(int patch) { ++num_px_[patch]; }
-
-  int root(int patch) {
-    while (parent_[patch] != patch) patch = parent_[patch] = parent_[parent_[patch]];
-    return patch;
+  int root(int run) {
+    while (parent_[run] != run) run = parent_[run] = parent_[parent_[run]];
+    return run;
   }
 
   void join(int a, int b) {
@@ -34,41 +38,56 @@ class Patches {
     num_px_[a] += num_px_[b];
   }
 
-  int num_px(int patch) { return num_px_[root(patch)]; }
+  int num_px(int run) { return num_px_[root(run)]; }
+  [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
 
  private:
-  std::vector<int> parent_;
+  std::vector<Run> runs_;
   std::vector<int> num_px_;
+  std::vector<int> parent_;
 };
 
-constexpr int kNone = -1;
+/// Splits a row into runs; `run_of` gets the run of every valid pixel.
+void find_runs(const float* d, int width, int y, float max_step_px, Patches& patches, int* run_of) {
+  for (int x = 0; x < width;) {
+    if (std::isnan(d[x])) {
+      ++x;
+      continue;
+    }
+    int end = x + 1;
+    while (end < width && std::abs(d[end] - d[end - 1]) <= max_step_px) ++end;  // false for NaN
+    std::fill(run_of + x, run_of + end, patches.add({y, x, end}));
+    x = end;
+  }
+}
+
+/// Joins the runs of a row with those of the row above.
+void join_rows(const float* above, const int* run_above, const float* d, const int* run_of, int width,
+               float max_step_px, Patches& patches) {
+  int last_above = -1, last = -1;
+  for (int x = 0; x < width; ++x) {
+    if (!(std::abs(d[x] - above[x]) <= max_step_px)) continue;
+    if (run_above[x] == last_above && run_of[x] == last) continue;
+    patches.join(last_above = run_above[x], last = run_of[x]);
+  }
+}
 
 }  // namespace
 
 void remove_small_segments(DisparityImage& disparity, int min_segment_px, float max_step_px) {
-  const int width = disparity.px.width, height = disparity.px.height;
+  Image<float>& px = disparity.px;
   Patches patches;
-  Image<int> patch_of(width, height, kNone);
-  for (int y = 0; y < height; ++y) {
-    const float* d = disparity.px.row(y);
-    const float* above = y > 0 ? disparity.px.row(y - 1) : nullptr;
-    int* patch = patch_of.row(y);
-    const int* patch_above = above ? patch_of.row(y - 1) : nullptr;
-    for (int x = 0; x < width; ++x) {
-      if (std::isnan(d[x])) continue;
-      // A comparison with NaN is false: an invalid neighbour never joins.
-      const bool joins_left = x > 0 && std::abs(d[x] - d[x - 1]) <= max_step_px;
-      const bool joins_above = above && std::abs(d[x] - above[x]) <= max_step_px;
-      patch[x] = joins_left ? patch[x - 1] : joins_above ? patch_above[x] : patches.add();
-      patches.count(patches.root(patch[x]));
-      if (joins_left && joins_above && patch[x] != patch_above[x]) patches.join(patch[x], patch_above[x]);
+  std::vector<int> run_above(px.width), run_of(px.width);
+  for (int y = 0; y < px.height; ++y) {
+    find_runs(px.row(y), px.width, y, max_step_px, patches, run_of.data());
+    if (y > 0) {
+      join_rows(px.row(y - 1), run_above.data(), px.row(y), run_of.data(), px.width, max_step_px, patches);
     }
+    std::swap(run_above, run_of);
   }
-  for (std::size_t i = 0; i < patch_of.size(); ++i) {
-    const int patch = patch_of.pixels[i];
-    if (patch != kNone && patches.num_px(patch) < min_segment_px) {
-      disparity.px.pixels[i] = std::numeric_limits<float>::quiet_NaN();
-    }
+  for (int i = 0; const Run& run : patches.runs()) {
+    if (patches.num_px(i++) >= min_segment_px) continue;
+    std::fill(px.row(run.y) + run.begin, px.row(run.y) + run.end, std::numeric_limits<float>::quiet_NaN());
   }
 }
 

@@ -19,7 +19,8 @@ constexpr int kSmallStep = 9;         // P1: slanted surfaces
 constexpr int kJump = 90;             // P2: depth edges, where the picture is smooth
 constexpr int kLeastJump = 12;        // P2 across the strongest edge of the picture
 constexpr double kJumpEdge = 0.1;     // P2 = kJump / (1 + kJumpEdge * step of brightness)
-constexpr int kMaxLeftRightPx = 2;
+constexpr int kMaxLeftRightPx = 3;
+constexpr int kMaxCost = 60;  // of the half sum of four paths: on average more than 30 per path
 constexpr int kWarmUpRows = 16;       // paths start this far outside a band
 constexpr int kLargestBandPair = 160;  // rows
 
@@ -64,7 +65,8 @@ class SgmMatcher : public DisparityMatcher {
   SgmMatcher(const StereoOptions& options, const MatchKernels& kernels)
       : rule_{.min_disparity = options.min_disparity,
               .num_disparities = options.num_disparities,
-              .max_left_right_px = kMaxLeftRightPx},
+              .max_left_right_px = kMaxLeftRightPx,
+              .max_cost = kMaxCost},
         num_threads_(threads_to_use(options.num_threads)),
         kernels_(kernels),
         jump_(jump_by_brightness_step()),

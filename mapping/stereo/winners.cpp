@@ -35,6 +35,7 @@ void row_disparities(const WinnersRow& winners, int width, const WinnersRule& ru
     disparity[x] = std::numeric_limits<float>::quiet_NaN();
     if (right_x < 0 || right_x >= width || best + 1 >= rule.num_disparities) continue;
     if (std::abs(winners.right[width - 1 - x + best] - best) > rule.max_left_right_px) continue;
+    if (winners.cost[x] > rule.max_cost) continue;
     if (winners.second && winners.second[x] < winners.cost[x] + rule.least_lead) continue;
     const float fraction = best == 0 ? 0.F : v_fit(winners.before[x], winners.cost[x], winners.after[x]);
     disparity[x] = static_cast<float>(rule.min_disparity + best) + fraction;

@@ -25,6 +25,7 @@ struct WinnersRule {
   int min_disparity = 0;
   int num_disparities = 0;
   int max_left_right_px = 0;  // the right picture's own answer differs by no more
+  int max_cost = 255;         // dearer winners are no match at all: too near, too dark, reflected
   int least_lead = 0;         // the second best cost is higher by at least this; needs WinnersRow::second
 };
 
