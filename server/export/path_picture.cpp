@@ -64,6 +64,14 @@ MapArea area_of(const MapSnapshot& map, const std::vector<TrajectoryEntry>& traj
   return {{area.low.x - margin, area.low.y - margin}, {area.high.x + margin, area.high.y + margin}};
 }
 
+/// How dark a pixel of the map is, 0 to 1: an obstacle never paler than a pencil line, however few rays tell of
+/// it; the surer, the darker.
+double ink(std::uint8_t grey, std::uint8_t trinary) {
+  constexpr double kPencil = 0.4;
+  const double M = 1 - grey / 255.0;
+  return trinary == kTrinaryOccupied ? kPencil + (1 - kPencil) * M : M;
+}
+
 /// Columns that were seen in any layer.
 Image<std::uint8_t> seen_mask(const MapSnapshot& map, const MapArea& area) {
   Image<std::uint8_t> seen(static_cast<int>(area.width()), static_cast<int>(area.height()));
@@ -82,11 +90,12 @@ Sheet draw_map(const StoredMap& stored, Operators operators) {
   rules.operators = operators;
   const MapPicture picture = map_picture(map, area_of(map, stored.trajectory), {}, rules);
   const Image<std::uint8_t> seen = seen_mask(map, picture.area);
+  const Image<std::uint8_t> trinary = trinary_picture(map, picture.area, {}, rules).grey;
   cv::Mat cells(seen.height, seen.width, CV_8UC3);
   for (int y = 0; y < seen.height; ++y) {
     for (int x = 0; x < seen.width; ++x) {
       const cv::Vec3b base = seen.at(x, y) != 0 ? kFree : kPaper;
-      cells.at<cv::Vec3b>(y, x) = base * (picture.grey.at(x, y) / 255.0);
+      cells.at<cv::Vec3b>(y, x) = base * (1 - ink(picture.grey.at(x, y), trinary.at(x, y)));
     }
   }
   const int factor = std::clamp(kWantedPx / std::max(seen.width, seen.height), 1, 16);
