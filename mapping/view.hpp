@@ -54,6 +54,7 @@ struct Tracking {
   std::vector<Eigen::Vector2f> corners_px;  // of the current left picture
   std::string reason;                       // in words, if weak or lost: "too few corners (12 of 40 needed)"
   bool new_key_frame = false;
+  int segment = 0;  // grows when odometry goes on after a loss without knowing where: 0, 1, 2 ...
 
   [[nodiscard]] bool has_pose() const { return state == TrackingState::ok || state == TrackingState::weak; }
 };

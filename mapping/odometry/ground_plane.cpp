@@ -31,18 +31,18 @@ class GroundSearch {
   [[nodiscard]] std::optional<GroundPlane> best() const {
     std::vector<GroundPlane> planes;
     const std::size_t step = std::max<std::size_t>(1, level_.size() / kNumSeeds);
-    int largest = 0;
+    double largest_m2 = 0;  // by area: a table close by fills more of the picture than the floor behind it
     for (std::size_t i = 0; i < level_.size(); i += step) {
       const auto plane = grow(level_[i]->normal, level_[i]->centre);
       if (!plane) continue;
       planes.push_back(*plane);
-      largest = std::max(largest, plane->num_patches);
+      largest_m2 = std::max(largest_m2, plane->area_m2);
     }
     const GroundPlane* lowest = nullptr;
     for (const GroundPlane& plane : planes) {
-      const bool large = plane.num_patches >= kNearlyAsLarge * largest;
+      const bool large = plane.area_m2 >= kNearlyAsLarge * largest_m2;
       if (large && (!lowest || plane.height_m > lowest->height_m + options_.slab_m ||
-                    (plane.height_m > lowest->height_m - options_.slab_m && plane.num_patches > lowest->num_patches))) {
+                    (plane.height_m > lowest->height_m - options_.slab_m && plane.area_m2 > lowest->area_m2))) {
         lowest = &plane;
       }
     }
@@ -59,7 +59,7 @@ class GroundSearch {
       }
       up = sum.normalized();
     }
-    GroundPlane plane{up, -up.dot(seed), 0, 0};
+    GroundPlane plane{.up = up, .height_m = -up.dot(seed)};
     for (const double slab : {3.0, 2.0, 1.0, 1.0}) {
       const auto fitted = fit(plane, slab * options_.slab_m);
       if (!fitted) return std::nullopt;
@@ -79,6 +79,7 @@ class GroundSearch {
       b -= row * error / (sigma * sigma);
     };
     int count = 0;
+    double area_m2 = 0;
     for (const SurfacePatch* patch : level_) {
       const double gap = plane.up.dot(patch->centre) + plane.height_m;
       const double sigma = std::max(patch->range_sigma_m, 0.25 * options_.slab_m);
@@ -87,6 +88,7 @@ class GroundSearch {
       add({1, 0, 0}, -u.dot(patch->normal), options_.normal_sigma_rad);
       add({0, 1, 0}, -v.dot(patch->normal), options_.normal_sigma_rad);
       ++count;
+      area_m2 += patch->area_m2;
     }
     if (count < kLeastPatches) return std::nullopt;
     for (const SurfacePatch& wall : patches_) {
@@ -99,7 +101,7 @@ class GroundSearch {
     if (!x.allFinite()) return std::nullopt;
     const Eigen::Matrix3d covariance = ldlt.solve(Eigen::Matrix3d::Identity());
     return GroundPlane{(plane.up + x(0) * u + x(1) * v).normalized(), plane.height_m + x(2),
-                       std::sqrt(covariance(0, 0) + covariance(1, 1)), count};
+                       std::sqrt(covariance(0, 0) + covariance(1, 1)), count, area_m2};
   }
 
   const std::vector<SurfacePatch>& patches_;

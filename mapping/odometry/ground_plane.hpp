@@ -14,7 +14,8 @@ struct GroundPlane {
   Eigen::Vector3d up;         // unit length
   double height_m = 0;
   double tilt_sigma_rad = 0;  // of up, if the pieces' errors were independent
-  int num_patches = 0;        // that lie on it
+  int num_patches = 0;        // that lie on it ...
+  double area_m2 = 0;         // ... and how large they are together, each sight of a place counted
 };
 
 struct GroundOptions {
@@ -25,7 +26,7 @@ struct GroundOptions {
 };
 
 /// The plane with many pieces, not too far from `expected_up`, below the origin; of several floors (a table, the
-/// floor) the lowest that is not much smaller than the largest. All in one frame. Nothing if there is none.
+/// floor) the lowest whose area is not much smaller than the largest's. All in one frame. Nothing if there is none.
 [[nodiscard]] std::optional<GroundPlane> find_ground(const std::vector<SurfacePatch>& patches,
                                                      const Eigen::Vector3d& expected_up,
                                                      const GroundOptions& options);

@@ -52,6 +52,20 @@ class StereoOdometry::Tracker {
         map_(camera, options.max_key_frames, options.max_landmarks, options.placement.motion.disparity_sigma_px) {}
 
   Tracking track(const RectifiedFrame& frame, const DisparityImage& disparity) {
+    Tracking tracking = track_frame(frame, disparity);
+    tracking.segment = segment_;
+    return tracking;
+  }
+
+  void reset() {
+    map_.clear();
+    pose_ = SE3::Identity();
+    num_lost_ = 0;
+    segment_ = 0;
+  }
+
+ private:
+  Tracking track_frame(const RectifiedFrame& frame, const DisparityImage& disparity) {
     Current current{frame, extract_features(camera_, frame.left, disparity, options_.corners)};
     Tracking tracking;
     for (const Corner& corner : current.features.corners) tracking.corners_px.push_back(corner.px);
@@ -67,13 +81,6 @@ class StereoOdometry::Tracker {
     return start_segment(std::move(tracking), current, reason);
   }
 
-  void reset() {
-    map_.clear();
-    pose_ = SE3::Identity();
-    num_lost_ = 0;
-  }
-
- private:
   [[nodiscard]] std::string too_few_corners(const Current& current) const {
     const char* why = mean_grey(current.frame.left) < kDarkGrey ? "too dark: too few corners" : "too few corners";
     return counted(why, static_cast<int>(current.features.corners.size()), options_.min_corners);
@@ -98,6 +105,7 @@ class StereoOdometry::Tracker {
 
   Tracking start_segment(Tracking tracking, Current& current, const std::string& reason) {
     map_.clear();
+    ++segment_;
     return start(std::move(tracking), current, "not found again (" + reason + "): goes on from the last known pose");
   }
 
@@ -156,6 +164,7 @@ class StereoOdometry::Tracker {
   StereoCamera camera_;
   LocalMap map_;
   SE3 pose_ = SE3::Identity();  // the last known
+  int segment_ = 0;             // see Tracking::segment
   int num_lost_ = 0;            // frames with corners but no pose, in a row
 };
 

@@ -14,6 +14,7 @@ struct SurfacePatch {
   Eigen::Vector3d centre;    // metres
   Eigen::Vector3d normal;    // unit length, towards the camera
   double range_sigma_m = 0;  // of the distance of its plane from the camera
+  double area_m2 = 0;        // of the surface, not of the picture
 };
 
 /// Fits a plane to every block of up to 32 x 32 px. A plane n.P = -h in space is one in disparity:

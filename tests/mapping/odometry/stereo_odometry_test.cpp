@@ -143,6 +143,7 @@ TEST(StereoOdometry, PutDownElsewhereGoesOnFromTheLastKnownPoseAndSaysSo) {
   }
   EXPECT_EQ(num_lost, OdometryOptions{}.max_lost_frames);
   EXPECT_EQ(tracking.state, TrackingState::weak);
+  EXPECT_EQ(tracking.segment, 1);
   EXPECT_THAT(tracking.reason, HasSubstr("last known pose"));
   EXPECT_EQ(tracking.odometry_from_camera.matrix(), last.odometry_from_camera.matrix());
 }
