@@ -1,4 +1,4 @@
-// Directions seen from above, in bins about as fine as the columns of the picture. FLOG.md section 7,
+// Directions seen from above, in bins as fine as the columns of the picture. FLOG.md section 7,
 // point 1.
 #pragma once
 
@@ -41,9 +41,13 @@ inline Eigen::Vector2d heading_of(const SE3& world_from_camera) {
   return (ahead.norm() >= 0.5 * upright.norm() ? ahead : upright).normalized();
 }
 
+/// Two bins per column of the picture: for a level camera every second one stays empty, for any other the
+/// counts of far cells come out twice as even.
 inline AzimuthBins azimuth_bins(const RayModel& model, const SE3& world_from_camera) {
-  const double per_tangent = std::min(model.camera.focal_px / model.column_step, 8000.0);  // 16 bits a bin
-  const double first = model.camera.cx_px / model.column_step;
+  const double per_column = 2.0 / model.column_step;
+  const double per_tangent =
+      std::min(model.camera.focal_px * per_column, 8000.0);  // a bin's number has 16 bits
+  const double first = model.camera.cx_px * per_column;
   const double half = std::ceil(per_tangent) + 2;
   return {heading_of(world_from_camera), per_tangent, half - (first - std::floor(first)),
           2 * static_cast<int>(half) + 1};

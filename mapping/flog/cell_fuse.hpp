@@ -49,22 +49,16 @@ class CellMerger {
 
   /// Requires evidence.rays > 0.
   void merge(Cell& cell, const CellEvidence& evidence) const {
-    const std::uint32_t n = evidence.rays;
-    const double x_E = evidence.empty / n, x_O = evidence.occupied / n;
-    note_change(cell, x_O);
-    const std::uint32_t N = cell.rays;
-    const std::uint32_t a1 = std::min(n, N_f_ > N ? N_f_ - N : 0U);  // rays until N_f is reached
-    const double total = N + a1;
-    double E = (N * double{mu_E(cell)} + a1 * x_E) / total;
-    double O = (N * double{mu_O(cell)} + a1 * x_O) / total;
-    if (n > a1) {
-      const double w = faded(n - a1);
-      E = w * E + (1 - w) * x_E;
-      O = w * O + (1 - w) * x_O;
+    const std::uint32_t N = cell.rays, n = evidence.rays;
+    if (N >= rays_before_change_ || cell.change != 0) note_change(cell, evidence);
+    if (N + n <= N_f_) {
+      const double share = 1.0 / (N + n);
+      set(cell, (N * double{mu_E(cell)} + evidence.empty) * share,
+          (N * double{mu_O(cell)} + evidence.occupied) * share);
+    } else {
+      merge_saturating(cell, evidence);
     }
-    cell.rays = static_cast<std::uint16_t>(total);
-    cell.empty = quantised(E);
-    cell.occupied = std::min(quantised(O), static_cast<std::uint16_t>(65535 - cell.empty));
+    cell.rays = static_cast<std::uint16_t>(std::min(N + n, N_f_));
   }
 
  private:
@@ -81,8 +75,25 @@ class CellMerger {
     return w;
   }
 
+  static void set(Cell& cell, double E, double O) {
+    cell.empty = quantised(E);
+    cell.occupied = std::min(quantised(O), static_cast<std::uint16_t>(65535 - cell.empty));
+  }
+
+  /// The first a1 rays fill the cell up to N_f, the other s = n - a1 let it fade towards the view's mean x.
+  void merge_saturating(Cell& cell, const CellEvidence& evidence) const {
+    const std::uint32_t N = cell.rays, n = evidence.rays;
+    const double x_E = evidence.empty / n, x_O = evidence.occupied / n;
+    const std::uint32_t a1 = N_f_ > N ? N_f_ - N : 0;
+    const double E1 = (N * double{mu_E(cell)} + a1 * x_E) / (N + a1);
+    const double O1 = (N * double{mu_O(cell)} + a1 * x_O) / (N + a1);
+    const double w = faded(n - a1);
+    set(cell, w * E1 + (1 - w) * x_E, w * O1 + (1 - w) * x_O);
+  }
+
   /// Keeps the largest recent |x_O - O|, decaying by 7/8 a view; a cell hardly seen before cannot change.
-  void note_change(Cell& cell, double x_O) const {
+  void note_change(Cell& cell, const CellEvidence& evidence) const {
+    const double x_O = evidence.occupied / evidence.rays;
     const auto decayed = static_cast<std::uint16_t>(cell.change * 7U / 8U);
     const bool known = cell.rays > 0 && cell.rays >= rays_before_change_;
     cell.change = known ? std::max(decayed, quantised(std::abs(x_O - double{mu_O(cell)}))) : decayed;

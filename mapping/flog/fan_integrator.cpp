@@ -38,7 +38,7 @@ void FanIntegrator::integrate_bins(const SE3& world_from_camera, int first_bin, 
                                    ViewEvidence& evidence) const {
   const Eigen::Vector3d T = world_from_camera.translation();
   FanLine line;
-  FanSums sums(grid_, grid_.num_layers());
+  FanSums sums(grid_);
   for (int bin = first_bin; bin < end_bin; ++bin) {
     float end_m = 0;
     for (const FanRay* ray = rays_.begin(bin); ray != rays_.end(bin); ++ray)

@@ -1,6 +1,7 @@
 #include "mapping/flog/fan_sums.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace flogmap {
 namespace {
@@ -38,34 +39,40 @@ struct FanSums::Ramps {
 };
 
 void FanSums::start(const FanLine& line, double camera_z_m) {
-  stride_ = line.size() + 1;
   bounds_m_.clear();
   for (const double z : grid_.layer_bounds_m) bounds_m_.push_back(static_cast<float>(z - camera_z_m));
-  counts_.assign(std::size_t(stride_) * num_layers_, 0);
-  changes_.assign(std::size_t(stride_) * num_layers_, Change{});
+  const std::size_t size = std::size_t(line.size()) + 1;
+  for (Layer& layer : layers_) {
+    if (layer.counts.size() < size) layer.counts.resize(size, 0);
+    if (layer.changes.size() < size) layer.changes.resize(size);
+    layer.first_change = line.size() + 1;
+    layer.last_change = -1;
+  }
 }
 
 void FanSums::add(const FanLine& line, const FanRay& ray) {
   const Ramps ramps(ray);
   float low = bounds_m_[0] * ray.run_per_rise;  // rho where the ray passes the lower bound of the layer
-  for (int layer = 0; layer < num_layers_; ++layer) {
-    const float high = bounds_m_[layer + 1] * ray.run_per_rise;
+  for (std::size_t k = 0; k < layers_.size(); ++k) {
+    const float high = bounds_m_[k + 1] * ray.run_per_rise;
     const float from = std::max(0.0F, std::min(low, high)), to = std::min(ray.end_m, std::max(low, high));
-    if (from < to) add_stretch(line, ramps, layer, from, to);
+    if (from < to) add_stretch(line, ramps, layers_[k], from, to);
     low = high;
   }
 }
 
-void FanSums::add_stretch(const FanLine& line, const Ramps& ramps, int layer, float from_m, float to_m) {
+void FanSums::add_stretch(const FanLine& line, const Ramps& ramps, Layer& layer, float from_m,
+                          float to_m) const {
   const int first = line.column_at(from_m), last = line.column_at(to_m);
-  const std::size_t row = std::size_t(layer) * stride_;
-  ++counts_[row + first];
-  --counts_[row + last + 1];
-  if (to_m > ramps.begin_m) add_hit(line, ramps, changes_.data() + row, first, last, from_m, to_m);
+  ++layer.counts[first];
+  --layer.counts[last + 1];
+  if (to_m > ramps.begin_m) add_hit(line, ramps, layer, first, last, from_m, to_m);
 }
 
-void FanSums::add_hit(const FanLine& line, const Ramps& ramps, Change* changes, int first, int last,
+void FanSums::add_hit(const FanLine& line, const Ramps& ramps, Layer& layer, int first, int last,
                       float from_m, float to_m) const {
+  Change* changes = layer.changes.data();
+  layer.last_change = std::max(layer.last_change, last + 1);
   const auto add_one_column = [&](int j, float rho_m) {
     const Change value = ramps.at(rho_m);
     changes[j].met += value.met, changes[j].passed += value.passed;
@@ -73,14 +80,22 @@ void FanSums::add_hit(const FanLine& line, const Ramps& ramps, Change* changes, 
   };
   // In the first and last column the ray may not come as near to the axis as the line does.
   int begin = first, end = last + 1;
-  if (line.nearest_m(first) < from_m) add_one_column(begin++, from_m);
-  if (begin < end && line.nearest_m(last) > to_m) add_one_column(--end, to_m);
+  if (line.nearest_m(first) < from_m) {
+    layer.first_change = std::min(layer.first_change, first);
+    add_one_column(begin++, from_m);
+  }
+  if (begin < end && line.nearest_m(last) > to_m) {
+    layer.first_change = std::min(layer.first_change, last);
+    add_one_column(--end, to_m);
+  }
   if (begin >= end) return;
   const auto column_of = [&](float rho_m) {
     const int column = line.column_at(std::clamp(rho_m, from_m, to_m));
     return std::clamp(first_not_before(line, column, rho_m), begin, end);
   };
-  Change& met_begins = changes[column_of(ramps.begin_m)];
+  const int met_from = column_of(ramps.begin_m);
+  layer.first_change = std::min(layer.first_change, met_from);
+  Change& met_begins = changes[met_from];
   met_begins.met += ramps.at_0;
   met_begins.met_slope += ramps.slope;
   Change& hit = changes[column_of(ramps.hit_m)];
@@ -95,29 +110,51 @@ void FanSums::add_hit(const FanLine& line, const Ramps& ramps, Change* changes, 
   changes[end].passed -= kOne;
 }
 
-void FanSums::flush(const FanLine& line, ViewEvidence& evidence) {
+/// What the rays over column j say of one cell, from whole numbers that are exact.
+inline void FanSums::add_cell(Layer& layer, int j, float rho_m, EvidenceSum& sum) {
+  Change& ramps = layer.ramps;
+  Change& change = layer.changes[j];
+  ramps.met += change.met, ramps.met_slope += change.met_slope;
+  ramps.passed += change.passed, ramps.passed_slope += change.passed_slope;
+  change = Change{};
+  if (layer.rays == 0) return;
   constexpr double kUnit = static_cast<double>(kEvidenceOne) / static_cast<double>(kOne);
-  std::vector<std::int32_t> rays(num_layers_, 0);
-  std::vector<Change> sum(num_layers_);
+  const double rho = rho_m, all = static_cast<double>(layer.rays) * kEvidenceOne;
+  const auto value = [&](std::int64_t constant, std::int64_t slope) {
+    return (static_cast<double>(constant) + static_cast<double>(slope) * rho) * kUnit;
+  };
+  const double met = std::clamp(value(ramps.met, ramps.met_slope), 0.0, all);
+  const double passed = std::clamp(value(ramps.passed, ramps.passed_slope), 0.0, met);
+  const auto met_sum = static_cast<std::int64_t>(met + 0.5),
+             passed_sum = static_cast<std::int64_t>(passed + 0.5);
+  sum.add(layer.rays, layer.rays * std::int64_t{kEvidenceOne} - met_sum, met_sum - passed_sum);
+}
+
+void FanSums::flush(const FanLine& line, ViewEvidence& evidence) {
+  for (Layer& layer : layers_) {
+    layer.rays = 0;
+    layer.ramps = Change{};
+  }
+  EvidenceSum nobody;
   for (int j = 0; j < line.size(); ++j) {
     EvidenceSum* cells = nullptr;
-    for (int layer = 0; layer < num_layers_; ++layer) {
-      const std::size_t place = std::size_t(layer) * stride_ + j;
-      const Change& change = changes_[place];
-      Change& s = sum[layer];
-      s.met += change.met, s.met_slope += change.met_slope;
-      s.passed += change.passed, s.passed_slope += change.passed_slope;
-      const std::int64_t n = rays[layer] += counts_[place];
-      if (n == 0) continue;
-      const double rho = line.nearest_m(j);
-      const double all = static_cast<double>(n) * kEvidenceOne;
-      const double met = std::clamp((double(s.met) + double(s.met_slope) * rho) * kUnit, 0.0, all);
-      const double passed = std::clamp((double(s.passed) + double(s.passed_slope) * rho) * kUnit, 0.0, met);
-      const auto met_sum = static_cast<std::int64_t>(met + 0.5),
-                 passed_sum = static_cast<std::int64_t>(passed + 0.5);
-      if (cells == nullptr) cells = evidence.column(line.cell(j));
-      cells[layer].add(n, n * std::int64_t{kEvidenceOne} - met_sum, met_sum - passed_sum);
+    for (std::size_t k = 0; k < layers_.size(); ++k) {
+      Layer& layer = layers_[k];
+      layer.rays += std::exchange(layer.counts[j], 0);
+      const bool ramps = j >= layer.first_change && j <= layer.last_change;
+      if (layer.rays == 0 && !ramps) continue;
+      if (layer.rays != 0 && cells == nullptr) cells = evidence.column(line.cell(j));
+      if (ramps) {
+        add_cell(layer, j, line.nearest_m(j), cells == nullptr ? nobody : cells[k]);
+      } else {
+        cells[k].rays_and_empty +=
+            static_cast<std::uint64_t>(layer.rays) * ((std::uint64_t{1} << 40U) + kEvidenceOne);
+      }
     }
+  }
+  for (Layer& layer : layers_) {
+    layer.counts[line.size()] = 0;
+    layer.changes[line.size()] = Change{};
   }
 }
 

@@ -16,7 +16,7 @@ namespace flogmap {
 /// ends. Everything is kept in whole numbers: no order of the rays changes a bit.
 class FanSums {
  public:
-  FanSums(const GridSpec& grid, int num_layers) : grid_(grid), num_layers_(num_layers) {}
+  explicit FanSums(const GridSpec& grid) : grid_(grid), layers_(grid.num_layers()) {}
 
   /// Starts a line of columns; heights are seen from a camera at camera_z_m.
   void start(const FanLine& line, double camera_z_m);
@@ -33,16 +33,25 @@ class FanSums {
   };
   struct Ramps;
 
-  void add_stretch(const FanLine& line, const Ramps& ramps, int layer, float from_m, float to_m);
-  void add_hit(const FanLine& line, const Ramps& ramps, Change* changes, int first, int last, float from_m,
+  /// One layer over the columns of the line.
+  struct Layer {
+    std::vector<std::int32_t> counts;  // rays that begin at a column minus rays that ended before it
+    std::vector<Change> changes;       // not zero at most within [first_change, last_change]
+    int first_change = 0, last_change = -1;
+
+    // While the sums are added up:
+    std::int64_t rays = 0;
+    Change ramps;
+  };
+
+  void add_stretch(const FanLine& line, const Ramps& ramps, Layer& layer, float from_m, float to_m) const;
+  void add_hit(const FanLine& line, const Ramps& ramps, Layer& layer, int first, int last, float from_m,
                float to_m) const;
+  static void add_cell(Layer& layer, int j, float rho_m, EvidenceSum& sum);
 
   const GridSpec& grid_;
-  int num_layers_;
-  int stride_ = 0;                    // columns per layer
-  std::vector<float> bounds_m_;       // heights of the layers' bounds above the camera
-  std::vector<std::int32_t> counts_;  // [layer * stride + column]: rays that begin minus rays that ended
-  std::vector<Change> changes_;       // likewise
+  std::vector<float> bounds_m_;  // heights of the layers' bounds above the camera
+  std::vector<Layer> layers_;
 };
 
 }  // namespace flogmap
