@@ -45,7 +45,7 @@ export class MapView {
   private theme: Theme = 'dark';
 
   constructor(private readonly holder: HTMLElement, private readonly live: LiveMap, private readonly settings: Store<Settings>) {
-    this.renderer = new WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
+    this.renderer = new WebGLRenderer({ antialias: window.devicePixelRatio < 1.5, powerPreference: 'high-performance' });
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     holder.prepend(this.canvas);

@@ -1,0 +1,143 @@
+// A map grows in the page while the camera walks; what is drawn is what the server holds, by the rules that are chosen.
+import { expect, test, type Page } from '@playwright/test';
+import { rampColour } from '../../web/src/palette';
+import { styleValue, type Style } from '../../web/src/rules';
+import { open, pixels, project, quiet, state, tile, keys } from './flog_page';
+import { Program } from './program';
+
+const PLANE = 4096;
+let program: Program;
+
+test.beforeAll(async () => { program = await Program.start('sim:room'); });
+test.afterAll(async () => { await program.end(); });
+
+async function pause(page: Page): Promise<void> {
+  const { state: now } = await program.json<{ state: string }>('session');
+  if (now === 'running') await program.post('session:pause');
+  await page.waitForTimeout(1000);
+  await quiet(page, (await program.json<{ rev: number }>('maps/live')).rev);
+}
+const resume = (): Promise<unknown> => program.post('session:resume');
+
+test('the room appears and grows while the camera walks', async ({ page }) => {
+  const errors: string[] = [];
+  page.on('pageerror', (error) => errors.push(error.message));
+  page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
+  await open(page, program.url);
+  const before = await state(page);
+  await expect.poll(async () => (await state(page)).rev).toBeGreaterThan(before.rev);
+  await expect.poll(async () => (await state(page)).trajectoryLength).toBeGreaterThan(before.trajectoryLength);
+  await expect(page.locator('.chip')).toHaveText(/Live|Lagging/);
+  for (const picture of ['Left', 'Disparity'])
+    await expect.poll(() => page.locator(`canvas[aria-label^="${picture}"]`).evaluate((canvas: HTMLCanvasElement) => canvas.width)).toBeGreaterThan(100);
+  expect(errors).toEqual([]);
+});
+
+test('the page holds the server’s tiles, byte for byte', async ({ page }) => {
+  await open(page, program.url);
+  await pause(page);
+  const held = (await keys(page)).filter((key) => key.startsWith('0/'));
+  expect(held.length).toBeGreaterThan(3);
+  for (const key of held.slice(0, 12)) {
+    const [level, x, y] = key.split('/').map(Number) as [number, number, number];
+    const mine = await tile(page, level, x, y);
+    for (const layer of [0, 1, 2]) {
+      const served = await program.json<{ rev: number; layers: Record<'E' | 'O' | 'K', number[]>[] }>(`maps/live/layers/${layer}/tiles/${key}?f=json`);
+      expect(served.rev, key).toBe(mine?.rev);
+      for (const [i, plane] of (['E', 'O', 'K'] as const).entries()) {
+        const here = Array.from({ length: PLANE }, (_, column) => mine?.planes[layer * 4 * PLANE + 4 * column + i]);
+        expect(here, `${key} layer ${layer} ${plane}`).toEqual(served.layers[0]?.[plane]);
+      }
+    }
+  }
+  await resume();
+});
+
+/** Cells around the middle of the held map with their fused value of a style, none at a tile's edge. */
+async function samples(page: Page, style: Style): Promise<{ x: number; y: number; value: number }[]> {
+  const { cell_size: cell, layers } = await program.json<{ cell_size: number; layers: unknown[] }>('maps/live');
+  const found: { x: number; y: number; value: number }[] = [];
+  for (const key of (await keys(page)).filter((text) => text.startsWith('0/'))) {
+    const [, tx, ty] = key.split('/').map(Number) as [number, number, number];
+    const planes = (await tile(page, 0, tx, ty))?.planes ?? [];
+    for (let column = 65; column < PLANE - 65; column += 37) {
+      const evidence = layers.map((_, k) => ['E', 'O', 'K', 'C'].map((_plane, i) => (planes[k * 4 * PLANE + 4 * column + i] ?? 0) / 255) as [number, number, number, number]);
+      const seen = evidence.every(([, , K]) => K > 0.2);
+      const conflict = Math.max(...evidence.map(([E, O, K]) => 2 * Math.min(E, O) * K));
+      const value = Math.max(...evidence.map(([E, O, K, C]) => styleValue(style, 'algebraic', { E, O, K, C })));
+      if (seen && conflict < 0.85) found.push({ x: (tx * 64 + (column % 64) + 0.5) * cell, y: (ty * 64 + Math.floor(column / 64) + 0.5) * cell, value });
+    }
+  }
+  return found;
+}
+
+test('every pixel has the colour that rules and palette give to its cell', async ({ page }) => {
+  await open(page, `${program.url}/?fresh`);
+  await page.getByText('Grid', { exact: true }).click();
+  await page.getByText('Path', { exact: true }).click();
+  await pause(page);
+  const camera = await page.evaluate(() => (window as never as { __flog: { project(x: number, y: number): object } }).__flog.project(0, 0));
+  expect(camera).toBeDefined();
+  await page.locator('.map > canvas').focus();
+  for (let i = 0; i < 6; ++i) await page.keyboard.press('+'); // until a cell is wider than a pixel
+  for (const style of ['visual', 'planning', 'motion', 'confidence'] as const) {
+    await page.locator(`.rules input[value="${style}"]`).check({ force: true });
+    await page.waitForTimeout(700);
+    const picture = await pixels(page);
+    const canvas = await page.locator('.map > canvas').boundingBox();
+    let checked = 0;
+    let wrong = 0;
+    for (const { x, y, value } of await samples(page, style)) {
+      const at = await project(page, x, y);
+      if (!canvas || at.x < 4 || at.y < 4 || at.x > canvas.width - 4 || at.y > canvas.height - 4) continue;
+      const expected = rampColour('cividis', Math.round(255 * value) / 255);
+      const off = Math.max(...picture.at(at.x, at.y).map((channel, i) => Math.abs(channel - (expected[i] ?? 0))));
+      ++checked;
+      if (off > 12) ++wrong; // the camera's mark covers a few
+      if (checked >= 250) break;
+    }
+    expect(checked, style).toBeGreaterThan(30);
+    expect(wrong / checked, `${style}: ${wrong} of ${checked} pixels`).toBeLessThan(0.12);
+  }
+  await resume();
+});
+
+test('a click shows the evidence of the column as the server has it', async ({ page }) => {
+  await open(page, program.url);
+  await pause(page);
+  const spot = (await samples(page, 'visual'))[20];
+  if (!spot) throw new Error('nothing seen');
+  const at = await project(page, spot.x, spot.y);
+  await page.locator('.map > canvas').click({ position: at });
+  const where = (await page.locator('.cell-where').textContent()) ?? '';
+  const [x, y] = where.match(/-?\d+\.\d+/g)?.map(Number) ?? [];
+  await expect(page.locator('.cell-layer .rays').first()).toHaveText(/N \d+/);
+  const served = await program.json<{ layers: { layer: number; E: number; N: number }[] }>(`maps/live/cell?x=${x}&y=${y}`);
+  for (const { layer } of served.layers) await expect(page.locator(`.cell-layer[data-layer="${layer}"] .bar`)).toHaveCount(3);
+  await resume();
+});
+
+test('a reload in the middle gives the whole map again', async ({ page }) => {
+  await open(page, program.url);
+  await pause(page);
+  const before = { ...(await state(page)), keys: (await keys(page)).sort() };
+  await page.reload();
+  await open(page, program.url, before.tiles);
+  await quiet(page, before.rev);
+  const after = { ...(await state(page)), keys: (await keys(page)).sort() };
+  expect(after.keys).toEqual(before.keys);
+  expect(after.trajectoryLength).toBe(before.trajectoryLength);
+  await resume();
+});
+
+test('two pages see the same map', async ({ page, context }) => {
+  const other = await context.newPage();
+  await open(page, program.url);
+  await open(other, program.url);
+  await pause(page);
+  await quiet(other, (await state(page)).rev);
+  expect((await keys(other)).sort()).toEqual((await keys(page)).sort());
+  expect(await state(other)).toMatchObject({ epoch: (await state(page)).epoch, rev: (await state(page)).rev });
+  await other.close();
+  await resume();
+});

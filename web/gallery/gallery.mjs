@@ -1,0 +1,85 @@
+// Pictures of the page with a real map in it, and a short animation of how it grows. Called by scripts/gallery.
+import { spawn } from 'node:child_process';
+import { writeFileSync } from 'node:fs';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { chromium } from '@playwright/test';
+import { animatedPng } from './animated_png.mjs';
+
+const [source = 'sim:room', folder = 'docs/gallery'] = process.argv.slice(2);
+const web = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '..');
+const ARGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+const FRAMES = 24;
+const MAPPED_S = Number(process.env.GALLERY_SECONDS ?? 45); // how long the camera walks before the pictures
+
+function startProgram() {
+  const child = spawn(process.env.FLOGMAP_BIN ?? 'build/release/flogmap', ['serve', '--source', source, '--listen', '127.0.0.1:0', '--web-root', path.join(web, 'dist')], { stdio: ['ignore', 'pipe', 'inherit'] });
+  return new Promise((resolve, reject) => {
+    child.stdout.on('data', (data) => {
+      const url = /http:\/\/127\.0\.0\.1:\d+/.exec(String(data))?.[0];
+      if (url) resolve({ child, url });
+    });
+    child.on('exit', (code) => reject(new Error(`flogmap ended with ${code}`)));
+  });
+}
+
+async function openPage(browser, url, size, scheme, hash = '') {
+  const page = await browser.newPage({ viewport: size, colorScheme: scheme, deviceScaleFactor: size.width < 500 ? 2 : 1 });
+  await page.goto(`${url}/?fresh${hash}`);
+  await page.locator('.chip', { hasText: /Live|Lagging/ }).waitFor({ timeout: 60_000 });
+  return page;
+}
+
+/** Frames of the growing map, `FRAMES` over the time of mapping. */
+async function film(browser, url) {
+  const page = await openPage(browser, url, { width: 880, height: 560 }, 'dark');
+  await page.keyboard.press('[');
+  const frames = [];
+  for (let i = 0; i < FRAMES; ++i) {
+    frames.push(await page.screenshot());
+    await page.waitForTimeout((1000 * MAPPED_S) / FRAMES);
+  }
+  await page.close();
+  writeFileSync(path.join(folder, 'growing.png'), animatedPng(frames, 180));
+}
+
+const DESKTOP = { width: 1280, height: 800 };
+const SHOTS = [
+  ['live-dark', DESKTOP, 'dark', ''],
+  ['live-light', DESKTOP, 'light', ''],
+  ['large', { width: 1920, height: 1080 }, 'dark', ''],
+  ['paper-grey', DESKTOP, 'light', '#p=grey'],
+  ['motion', DESKTOP, 'dark', '#s=motion&p=viridis'],
+  ['classes', DESKTOP, 'dark', '', async (page) => { await page.getByText('Three classes only').click(); }],
+  ['heights', DESKTOP, 'dark', '', async (page) => { await page.getByText('Colour by height').click(); }],
+  ['solid', DESKTOP, 'dark', '', async (page) => { await page.getByText('Colour by height').click(); await page.locator('.map > canvas').focus(); await page.keyboard.press('v'); }],
+  ['spread', DESKTOP, 'light', '', async (page) => {
+    await page.getByText('Colour by height').click();
+    await page.locator('.map > canvas').focus();
+    await page.keyboard.press('v');
+    await page.getByLabel('Spread layers').fill('1');
+  }],
+  ['cell', DESKTOP, 'dark', '', async (page) => { await page.locator('.map > canvas').click({ position: { x: 330, y: 250 } }); await page.getByText('Camera', { exact: true }).click(); }],
+  ['status', DESKTOP, 'dark', '', async (page) => { for (const title of ['Camera', 'Cell']) await page.locator('summary', { hasText: title }).click(); await page.waitForTimeout(8000); }],
+  ['phone', { width: 390, height: 844 }, 'dark', ''],
+  ['phone-layers', { width: 390, height: 844 }, 'light', '', async (page) => { await page.locator('.tabs button').first().click(); }],
+];
+
+const { child, url } = await startProgram();
+const browser = await chromium.launch({ executablePath: process.env.FLOGMAP_CHROMIUM ?? '/usr/bin/chromium', args: ARGS });
+try {
+  await film(browser, url);
+  await fetch(`${url}/api/v1/session:pause`, { method: 'POST' });
+  for (const [name, size, scheme, hash, act] of SHOTS) {
+    const page = await openPage(browser, url, size, scheme, hash);
+    await act?.(page);
+    await page.waitForTimeout(2500);
+    await page.screenshot({ path: path.join(folder, `${name}.png`), timeout: 90_000 });
+    await page.close();
+    console.log(`${folder}/${name}.png`);
+  }
+} finally {
+  await browser.close();
+  child.kill('SIGTERM');
+}
+process.exit(0);
