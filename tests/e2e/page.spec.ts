@@ -81,12 +81,12 @@ test('keys do what the help says', async ({ page }) => {
 });
 
 test('a link brings back view, layers, style and cell', async ({ page }) => {
-  await openMock(page, '#v=2,3,120,0.5&l=0:1,1:-,2:0.5&s=motion&p=viridis&o=minmax&t=0.45&c=2.5,3.5&e=another&r=1');
+  await page.goto(`${files.url}/?mock=1&fresh#v=2,3,120,0.5&l=0:1,1:-,2:0.5&s=motion&p=viridis&o=minmax&t=0.45&c=2.5,3.5&e=another&r=1`);
+  await expect(page.locator('.notice')).toContainText('another map');
   await expect(page.locator('.rules input[value="motion"]')).toBeChecked();
   await expect(page.locator('.palettes input[value="viridis"]')).toBeChecked();
   await expect(page.locator('.layer.off')).toHaveCount(1);
   await expect(page.locator('.cell-where')).toContainText('2.50');
-  await expect(page.locator('.notice')).toContainText('another map');
   const middle = await page.evaluate(() => { const box = document.querySelector('.map > canvas')?.getBoundingClientRect(); const at = (window as never as { __flog: { project(x: number, y: number): { x: number; y: number } } }).__flog.project(2, 3); return [at.x - (box?.width ?? 0) / 2, at.y - (box?.height ?? 0) / 2]; });
   expect(Math.hypot(...middle)).toBeLessThan(2);
 });

@@ -5,7 +5,7 @@ import type { Page } from '../page';
 import { h, setText } from '../ui/dom';
 import { icon } from '../ui/icons';
 
-const SHOWN_MS = 6000;
+const SHOWN_MS = { info: 6000, warning: 12000 };
 
 export function notices(page: Page): HTMLElement {
   const element = h('div', { class: 'notices', role: 'status', 'aria-live': 'polite' });
@@ -13,7 +13,7 @@ export function notices(page: Page): HTMLElement {
     const note = h('div', { class: 'notice', 'data-tone': tone }, tone === 'warning' && icon('warning'), h('span', {}, text));
     element.append(note);
     while (element.children.length > 3) element.firstElementChild?.remove();
-    setTimeout(() => note.remove(), SHOWN_MS);
+    setTimeout(() => note.remove(), SHOWN_MS[tone]);
   });
   return element;
 }
