@@ -15,9 +15,10 @@
 namespace flogmap {
 namespace {
 
-constexpr int kWantedPx = 1400;      // the longer side, if the map is small
-constexpr double kMarginM = 0.25;    // around what was seen
-constexpr double kTickEveryM = 0.5;  // along the path
+constexpr int kWantedPx = 1400;                // the longer side, if the map is small
+constexpr double kMarginM = 0.25;              // around what was seen
+constexpr float kFigureConfidence = 1.0F / 8;  // of N_K
+constexpr double kTickEveryM = 0.5;            // along the path
 constexpr double kTickPx = 13;
 constexpr double kMaxPathCells = 5000;  // from the origin; a path that strays farther is cut off
 constexpr int kLegendPx = 64;
@@ -64,12 +65,11 @@ MapArea area_of(const MapSnapshot& map, const std::vector<TrajectoryEntry>& traj
   return {{area.low.x - margin, area.low.y - margin}, {area.high.x + margin, area.high.y + margin}};
 }
 
-/// How dark a pixel of the map is, 0 to 1: an obstacle never paler than a pencil line, however few rays tell of
-/// it; the surer, the darker.
-double ink(std::uint8_t grey, std::uint8_t trinary) {
-  constexpr double kPencil = 0.4;
-  const double M = 1 - grey / 255.0;
-  return trinary == kTrinaryOccupied ? kPencil + (1 - kPencil) * M : M;
+/// The same cells, trusted sooner: in a short recording few cells reach full confidence, and a figure as pale
+/// as that could not be read. What only a few rays tell stays pale.
+MapSnapshot trusted_sooner(MapSnapshot map) {
+  for (float& N_K : map.info.full_confidence_rays) N_K = std::max(1.0F, N_K * kFigureConfidence);
+  return map;
 }
 
 /// Columns that were seen in any layer.
@@ -88,14 +88,13 @@ Sheet draw_map(const StoredMap& stored, Operators operators) {
   const MapSnapshot map = snapshot_of(stored);
   Rules rules;
   rules.operators = operators;
-  const MapPicture picture = map_picture(map, area_of(map, stored.trajectory), {}, rules);
+  const MapPicture picture = map_picture(trusted_sooner(map), area_of(map, stored.trajectory), {}, rules);
   const Image<std::uint8_t> seen = seen_mask(map, picture.area);
-  const Image<std::uint8_t> trinary = trinary_picture(map, picture.area, {}, rules).grey;
   cv::Mat cells(seen.height, seen.width, CV_8UC3);
   for (int y = 0; y < seen.height; ++y) {
     for (int x = 0; x < seen.width; ++x) {
       const cv::Vec3b base = seen.at(x, y) != 0 ? kFree : kPaper;
-      cells.at<cv::Vec3b>(y, x) = base * (1 - ink(picture.grey.at(x, y), trinary.at(x, y)));
+      cells.at<cv::Vec3b>(y, x) = base * (picture.grey.at(x, y) / 255.0);
     }
   }
   const int factor = std::clamp(kWantedPx / std::max(seen.width, seen.height), 1, 16);

@@ -102,6 +102,17 @@ TEST(PathPicture, TellsFreeFromNeverSeenFromOccupied) {
   EXPECT_GT(paper[2], paper[0]);  // bluish, unlike any shade of M
 }
 
+TEST(PathPicture, ShowsAWallThatOneViewToldOfAndHardlyWhatAFewRaysDid) {
+  StoredMap map = walked_room();
+  auto tile = std::make_shared<Tile>(*map.tiles[0].tile);
+  tile->cells[40 * kTileSide + 15] = {0, 65535, 50, 0};  // K = .06
+  tile->cells[40 * kTileSide + 20] = {0, 65535, 4, 0};
+  map.tiles[0].tile = tile;
+  const Image<Rgb> picture = path_picture(map, Operators::algebraic);
+  EXPECT_LT(pixel_at(picture, 0.31, 0.81)[0], 150);
+  EXPECT_GT(pixel_at(picture, 0.41, 0.81)[1], 190);
+}
+
 TEST(PathPicture, RunsFromAGreenDotToARedSquare) {
   const Image<Rgb> picture = path_picture(walked_room(), Operators::algebraic);
   const Rgb start = pixel_at(picture, 0.1, 0.33), end = pixel_at(picture, 0.5, 0.33);
