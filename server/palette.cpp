@@ -8,7 +8,7 @@ namespace flogmap {
 namespace {
 
 /// Cividis (Nunez, Anderton, Renslow 2018, doi:10.1371/journal.pone.0199239) at eighths of its range.
-constexpr std::array<Rgb, 9> kCividis{{{0, 34, 78},
+constexpr std::array<Colour, 9> kCividis{{{0, 34, 78},
                                        {27, 57, 109},
                                        {67, 78, 108},
                                        {97, 101, 111},
@@ -19,7 +19,7 @@ constexpr std::array<Rgb, 9> kCividis{{{0, 34, 78},
                                        {254, 232, 56}}};
 
 /// Viridis (van der Walt and Smith 2015) at eighths of its range.
-constexpr std::array<Rgb, 9> kViridis{{{68, 1, 84},
+constexpr std::array<Colour, 9> kViridis{{{68, 1, 84},
                                        {71, 44, 122},
                                        {59, 81, 139},
                                        {44, 113, 142},
@@ -33,13 +33,13 @@ std::uint8_t between(std::uint8_t a, std::uint8_t b, double share) {
   return static_cast<std::uint8_t>(std::lround(a + share * (b - a)));
 }
 
-PaletteTable interpolated(std::span<const Rgb> points) {
+PaletteTable interpolated(std::span<const Colour> points) {
   PaletteTable table;
   for (int value = 0; value < 256; ++value) {
     const double at = value / 255.0 * static_cast<double>(points.size() - 1);
     const auto below = std::min(static_cast<std::size_t>(at), points.size() - 2);
     const double share = at - static_cast<double>(below);
-    const Rgb a = points[below], b = points[below + 1];
+    const Colour a = points[below], b = points[below + 1];
     table[value] = {between(a.r, b.r, share), between(a.g, b.g, share), between(a.b, b.b, share)};
   }
   return table;

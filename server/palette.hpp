@@ -10,12 +10,12 @@ namespace flogmap {
 
 enum class Palette : std::uint8_t { grey, cividis, viridis };
 
-struct Rgb {
+struct Colour {
   std::uint8_t r = 0, g = 0, b = 0;
-  bool operator==(const Rgb&) const = default;
+  bool operator==(const Colour&) const = default;
 };
 
-using PaletteTable = std::array<Rgb, 256>;
+using PaletteTable = std::array<Colour, 256>;
 
 /// Nothing if there is no palette of this name.
 std::optional<Palette> palette_named(std::string_view name);

@@ -1,19 +1,19 @@
 #include "server/picture_encoding.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "server/palette.hpp"
 
 namespace flogmap {
 namespace {
 
 constexpr int kJpegQuality = 80;
 constexpr int kFastPng = 1;  // compression level of 9
-constexpr Rgb kNoDisparity{42, 42, 46};
+constexpr Colour kNoDisparity{42, 42, 46};
 
 std::string to_string(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
 
@@ -63,7 +63,7 @@ double scale_end_px(const Image<float>& disparity) {
 
 cv::Mat coloured(const cv::Mat& disparity, double scale_end) {
   const PaletteTable& table = table_of(Palette::viridis);
-  const auto bgr = [](Rgb colour) { return cv::Vec3b(colour.b, colour.g, colour.r); };
+  const auto bgr = [](Colour colour) { return cv::Vec3b(colour.b, colour.g, colour.r); };
   cv::Mat out(disparity.rows, disparity.cols, CV_8UC3);
   for (int y = 0; y < disparity.rows; ++y) {
     const auto* from = disparity.ptr<float>(y);
@@ -91,6 +91,13 @@ EncodedPicture encode_disparity(const Image<float>& image, PictureKey key, std::
 
 }  // namespace
 
+PictureKey picture_key(const ImageRequest& request) {
+  constexpr std::array kWidths{1280, 960, 640, 480, 320, 240, 160};
+  if (request.max_width_px <= 0) return {request.stream, 0};
+  const auto width = std::find_if(kWidths.begin(), kWidths.end(), [&](int w) { return w <= request.max_width_px; });
+  return {request.stream, width == kWidths.end() ? kWidths.back() : *width};
+}
+
 std::optional<EncodedPicture> encode_picture(const PictureReport& report, PictureKey key) {
   if (key.stream == ImageStream::disparity) {
     if (!report.disparity || report.disparity->px.empty()) return std::nullopt;
@@ -102,13 +109,28 @@ std::optional<EncodedPicture> encode_picture(const PictureReport& report, Pictur
   return encode_grey(image, key, report.timestamp_ns);
 }
 
-std::string encode_png(int width_px, int height_px, int channels, const std::uint8_t* pixels) {
-  const cv::Mat rgb(height_px, width_px, CV_8UC(channels), const_cast<std::uint8_t*>(pixels));
-  cv::Mat bgr = rgb;
-  if (channels == 3) cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  if (channels == 4) cv::cvtColor(rgb, bgr, cv::COLOR_RGBA2BGRA);
+std::string encode_coloured_png(const Image<std::uint8_t>& values, Palette palette, int max_width_px) {
+  const cv::Mat full(values.height, values.width, CV_8U, const_cast<std::uint8_t*>(values.pixels.data()));
+  cv::Mat sent = full;
+  if (max_width_px > 0 && values.width > max_width_px) {
+    const int factor = (values.width + max_width_px - 1) / max_width_px;
+    cv::dilate(full, sent, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(factor, factor)));
+    sent = fitted(sent, max_width_px, cv::INTER_NEAREST);
+  }
+  cv::Mat picture;
+  if (palette == Palette::grey) {
+    cv::bitwise_not(sent, picture);  // white free or unknown, black occupied
+  } else {
+    cv::Mat table(1, 256, CV_8UC3);
+    for (int i = 0; i < 256; ++i) {
+      const Colour colour = table_of(palette)[i];
+      table.at<cv::Vec3b>(i) = {colour.b, colour.g, colour.r};
+    }
+    cv::cvtColor(sent, picture, cv::COLOR_GRAY2BGR);
+    cv::LUT(picture, table, picture);
+  }
   std::vector<std::uint8_t> file;
-  cv::imencode(".png", bgr, file, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  cv::imencode(".png", picture, file, {cv::IMWRITE_PNG_COMPRESSION, 3});
   return to_string(file);
 }
 

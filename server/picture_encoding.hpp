@@ -5,8 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "camera/image.hpp"
+#include "server/palette.hpp"
+#include "server/picture_key.hpp"
 #include "server/publication.hpp"
-#include "server/viewers.hpp"
+#include "server/wire.hpp"
 
 namespace flogmap {
 
@@ -14,7 +17,8 @@ namespace flogmap {
 /// where there is none). Nothing if the report does not hold it.
 std::optional<EncodedPicture> encode_picture(const PictureReport& report, PictureKey key);
 
-/// An interleaved 8-bit picture (1, 3 RGB or 4 RGBA channels, row 0 on top) as PNG.
-std::string encode_png(int width_px, int height_px, int channels, const std::uint8_t* pixels);
+/// Values 0 .. 255 in the colours of a palette as PNG, at most `max_width_px` wide (0: as it is). Where several
+/// values fall on one pixel the largest is shown, so that no obstacle gets lost.
+std::string encode_coloured_png(const Image<std::uint8_t>& values, Palette palette, int max_width_px);
 
 }  // namespace flogmap

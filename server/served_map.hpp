@@ -10,6 +10,7 @@
 #include "server/map_header.hpp"
 #include "server/publication.hpp"
 #include "server/tile_board.hpp"
+#include "server/tile_pictures.hpp"
 #include "server/wire.hpp"
 
 namespace flogmap {
@@ -27,6 +28,7 @@ class ServedMap {
   [[nodiscard]] const StereoCamera& camera() const { return camera_; }
   [[nodiscard]] TileBoard& board() { return board_; }
   [[nodiscard]] const TileBoard& board() const { return board_; }
+  [[nodiscard]] TilePictures& pictures() { return pictures_; }
   [[nodiscard]] MapHeader header() const;
 
   /// Every cell at this revision, for other threads; made once per revision.
@@ -65,6 +67,7 @@ class ServedMap {
   StereoCamera camera_;
   std::uint64_t revision_ = 0;
   TileBoard board_;
+  TilePictures pictures_;
   std::vector<TrajectoryEntry> trajectory_;
   bool rewritten_ = false;
   std::shared_ptr<const MapSnapshot> snapshot_;  // null: not made since the last change

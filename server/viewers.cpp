@@ -1,19 +1,11 @@
 #include "server/viewers.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace flogmap {
 
 using std::chrono::duration_cast;
 using std::chrono::steady_clock;
-
-PictureKey picture_key(const ImageRequest& request) {
-  constexpr std::array kWidths{1280, 960, 640, 480, 320, 240, 160};
-  if (request.max_width_px <= 0) return {request.stream, 0};
-  const auto width = std::find_if(kWidths.begin(), kWidths.end(), [&](int w) { return w <= request.max_width_px; });
-  return {request.stream, width == kWidths.end() ? kWidths.back() : *width};
-}
 
 void Viewers::join(Viewer& viewer) {
   viewers_.insert(&viewer);

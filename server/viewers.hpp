@@ -1,11 +1,11 @@
 #pragma once
 
 #include <chrono>
-#include <compare>
 #include <set>
 #include <span>
 #include <string>
 
+#include "server/picture_key.hpp"
 #include "server/stream_protocol.hpp"
 
 namespace flogmap {
@@ -20,16 +20,6 @@ class Viewer {
   /// Says goodbye and closes with 1001.
   virtual void dismiss(const std::string& reason) = 0;
 };
-
-/// A picture in the size that somebody wants.
-struct PictureKey {
-  ImageStream stream = ImageStream::left;
-  int max_width_px = 0;  // 0: full size
-  auto operator<=>(const PictureKey&) const = default;
-};
-
-/// Sizes are rounded down to a few, so that many pages share few pictures.
-PictureKey picture_key(const ImageRequest& request);
 
 /// All pages. Everything is said once and its bytes are shared.
 class Viewers {

@@ -1,5 +1,7 @@
 #include "server/api/parameters.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <vector>
@@ -87,6 +89,25 @@ std::optional<int> parse_layer(std::string_view text, const MapInfo& info) {
     throw RefusedRequest(404, "no-such-layer", "there is no layer '" + std::string(text) + "'", "layer");
   }
   return layer;
+}
+
+PictureChoice picture_choice(const ApiRequest& request, std::optional<int> layer) {
+  constexpr std::array<std::string_view, 7> kStyles{"visual",     "planning", "motion", "empty",
+                                                    "confidence", "conflict", "changed"};
+  PictureChoice choice{layer, Style::visual, Palette::grey};
+  if (const auto name = request.parameter("style")) {
+    const auto style = std::find(kStyles.begin(), kStyles.end(), *name);
+    if (style == kStyles.end()) {
+      refuse("style", "visual, planning, motion, empty, confidence, conflict or changed", *name);
+    }
+    choice.style = static_cast<Style>(style - kStyles.begin());
+  }
+  if (const auto name = request.parameter("palette")) {
+    const auto palette = palette_named(*name);
+    if (!palette) refuse("palette", "grey, cividis or viridis", *name);
+    choice.palette = *palette;
+  }
+  return choice;
 }
 
 std::string make_etag(std::string_view epoch, std::uint64_t revision, std::string_view representation) {

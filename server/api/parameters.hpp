@@ -40,6 +40,9 @@ std::optional<Bounds> bbox_parameter(const ApiRequest& request);
 /// A layer id, or nothing for "fused".
 std::optional<int> parse_layer(std::string_view text, const MapInfo& info);
 
+/// What the parameters style and palette ask for.
+PictureChoice picture_choice(const ApiRequest& request, std::optional<int> layer);
+
 /// Strong tag "<epoch>-<rev>-<representation>", quotes included.
 std::string make_etag(std::string_view epoch, std::uint64_t revision, std::string_view representation);
 

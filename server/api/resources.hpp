@@ -16,6 +16,11 @@ std::vector<Route> session_routes();     // /session
 std::vector<Route> playback_routes();    // /playback
 std::vector<Route> health_routes();      // /healthz, /readyz, /metrics
 std::vector<Route> about_routes();       // /config, /calibration, /version
+std::vector<Route> change_routes();      // /maps/{id}/changes
+std::vector<Route> batch_routes();       // /maps/{id}/tiles:batchGet
+std::vector<Route> image_routes();       // /maps/{id}/image.png
+std::vector<Route> export_routes();      // /maps/{id}/export
+std::vector<Route> docs_routes();        // /openapi.yaml, /docs
 
 /// All of them.
 std::vector<Route> all_routes();

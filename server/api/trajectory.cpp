@@ -1,47 +1,17 @@
 // GET /maps/{id}/trajectory?from=&format=json|pb|tum|kitti
-#include <array>
-#include <cstdio>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "server/api/parameters.hpp"
 #include "server/api/resources.hpp"
+#include "server/export/trajectory_text.hpp"
 
 namespace flogmap {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using Entries = std::span<const TrajectoryEntry>;
-
-/// "timestamp[s] tx ty tz qx qy qz qw" a line.
-std::string to_tum(Entries entries) {
-  std::string text;
-  for (const TrajectoryEntry& entry : entries) {
-    const Eigen::Vector3d t = entry.world_from_camera.translation();
-    const Eigen::Quaterniond q(entry.world_from_camera.rotation());
-    std::array<char, 256> line{};
-    std::snprintf(line.data(), line.size(), "%lld.%09lld %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",
-                  static_cast<long long>(entry.timestamp_ns / 1'000'000'000),
-                  static_cast<long long>(entry.timestamp_ns % 1'000'000'000), t.x(), t.y(), t.z(), q.x(), q.y(),
-                  q.z(), q.w());
-    text += line.data();
-  }
-  return text;
-}
-
-/// The 3 x 4 matrix world_from_camera, row by row, 12 numbers a line.
-std::string to_kitti(Entries entries) {
-  std::string text;
-  for (const TrajectoryEntry& entry : entries) {
-    for (int i = 0; i < 12; ++i) {
-      std::array<char, 32> number{};
-      std::snprintf(number.data(), number.size(), "%.9e%c", entry.world_from_camera.matrix()(i / 4, i % 4),
-                    i == 11 ? '\n' : ' ');
-      text += number.data();
-    }
-  }
-  return text;
-}
 
 std::string to_json(const ServedMap& map, std::size_t from, Entries entries) {
   Json points = Json::array();
@@ -77,8 +47,8 @@ ApiAnswer get_trajectory(const ApiRequest& request, ServerState& state) {
   if (format == "json") return json_response(to_json(map, static_cast<std::size_t>(from), entries));
   response.content_type = format == "pb" ? "application/x-protobuf" : "text/plain; charset=utf-8";
   response.body = to_shared(format == "pb"    ? encode_trajectory(map.epoch(), entries)
-                            : format == "tum" ? to_tum(entries)
-                                              : to_kitti(entries));
+                            : format == "tum" ? tum_of(entries)
+                                              : kitti_of(entries));
   return response;
 }
 

@@ -11,3 +11,7 @@ flogmap_test(wire_tests SOURCES wire_golden_test.cpp LINK wire_samples board pro
 
 flogmap_target(tile_mirror SOURCES tile_mirror.cpp PUBLIC board PRIVATE proto)
 flogmap_test(outbox_tests SOURCES outbox_law_test.cpp LINK tile_mirror board proto)
+
+flogmap_target(loopback_hub SOURCES loopback_hub.cpp client_frames.cpp PUBLIC hub PRIVATE network_libraries proto)
+flogmap_test(hub_tests SOURCES hub_http_test.cpp hub_stream_test.cpp
+             LINK loopback_hub synthetic_walk tile_mirror hub proto nlohmann_json::nlohmann_json)

@@ -1,0 +1,66 @@
+// GET /maps/{id}/image.png?bbox=&layer=&style=&palette=&width=
+#include "mapping/flog/map_picture.hpp"
+#include "server/api/parameters.hpp"
+#include "server/api/resources.hpp"
+#include "server/picture_encoding.hpp"
+
+namespace flogmap {
+namespace {
+
+constexpr std::int64_t kMaxPixels = 16'000'000;
+constexpr std::int64_t kMaxCells = 4 * kMaxPixels;
+
+MapArea requested_area(const MapSnapshot& map, const std::optional<Bounds>& bbox) {
+  if (!bbox) return tiled_area(map);
+  const double a = map.info.grid.cell_size_m, most = 2e9 * a;
+  const bool far = std::abs(bbox->x_min) > most || std::abs(bbox->y_min) > most || std::abs(bbox->x_max) > most ||
+                   std::abs(bbox->y_max) > most;
+  if (far) throw RefusedRequest(400, "bad-parameter", "no cell lies so far out", "bbox");
+  const CellIndex last = cell_at(map.info.grid, bbox->x_max, bbox->y_max);
+  return {cell_at(map.info.grid, bbox->x_min, bbox->y_min), {last.x + 1, last.y + 1}};
+}
+
+ApiResponse picture_of(const MapSnapshot& map, const MapArea& area, const PictureChoice& choice, const Rules& rules,
+                       int max_width_px) {
+  MapPicture picture = map_picture(map, area, choice.layer, rules);
+  for (std::uint8_t& pixel : picture.grey.pixels) pixel = static_cast<std::uint8_t>(255 - pixel);  // back to values
+  ApiResponse response;
+  response.content_type = "image/png";
+  response.body = to_shared(encode_coloured_png(picture.grey, choice.palette, max_width_px));
+  response.headers.emplace_back("Flogmap-Origin", std::to_string(picture.origin_x_m()) + "," +
+                                                      std::to_string(picture.origin_y_m()));
+  response.headers.emplace_back("Flogmap-Cell-Size", std::to_string(picture.cell_size_m));
+  return response;
+}
+
+ApiAnswer get_image(const ApiRequest& request, ServerState& state) {
+  ServedMap& map = requested_map(request, state);
+  const auto layer = parse_layer(request.parameter("layer").value_or("fused"), map.board().info());
+  const PictureChoice choice = picture_choice(request, layer);
+  const auto width = static_cast<int>(integer_parameter(request, "width", 0, 1, 16384));
+  const auto snapshot = map.snapshot();
+  const MapArea area = requested_area(*snapshot, bbox_parameter(request));
+  if (area.empty()) {
+    ApiResponse nothing;
+    nothing.status = 204;
+    return nothing;
+  }
+  const bool huge = area.width() > kMaxCells || area.height() > kMaxCells || area.width() * area.height() > kMaxCells;
+  const std::int64_t shown_width = width > 0 ? std::min<std::int64_t>(width, area.width()) : area.width();
+  if (huge || shown_width * (area.height() * shown_width / area.width() + 1) > kMaxPixels) {
+    throw RefusedRequest(422, "picture-too-large", "at most 16 megapixels of 64 million cells; give bbox or width", "width");
+  }
+  Rules rules;
+  rules.style = choice.style;
+  rules.operators = state.options.operators;
+  const bool for_robot = choice.style == Style::planning || choice.style == Style::motion;
+  if (for_robot) rules.robot_radius_m = state.options.robot.radius_m;
+  if (for_robot && state.options.robot.height_m > 0) rules.heights = {0, state.options.robot.height_m};
+  return ApiJob([=] { return picture_of(*snapshot, area, choice, rules, width); });
+}
+
+}  // namespace
+
+std::vector<Route> image_routes() { return {{Method::get, "/api/v1/maps/{}/image.png", Role::view, get_image}}; }
+
+}  // namespace flogmap
