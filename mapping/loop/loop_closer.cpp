@@ -28,26 +28,35 @@ Covariance6 step_covariance(const SE3& step, bool after_loss) {
   return sigma.cwiseAbs2().asDiagonal();
 }
 
+/// The same corner seen from elsewhere is not quite the same point: more matches do not make this smaller.
+Covariance6 with_floor(Covariance6 covariance) {
+  constexpr double kMetres = 0.008, kRadians = 0.003;
+  covariance.diagonal().head<3>().array() += kMetres * kMetres;
+  covariance.diagonal().tail<3>().array() += kRadians * kRadians;
+  return covariance;
+}
+
+double largest_move_m(const std::vector<SE3>& before, const std::vector<SE3>& after) {
+  double largest = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    largest = std::max(largest, (after[i].translation() - before[i].translation()).norm());
+  }
+  return largest;
+}
+
 }  // namespace
 
 LoopCloser::LoopCloser(const LoopOptions& options, const StereoCamera& camera) : options_(options), camera_(camera) {}
 
-std::vector<BinaryPatch> LoopCloser::patches_of(const Remembered& view) const {
-  const auto scales = scales_by_nearness(view.features, disparity_of_scale_1(camera_));
-  std::vector<BinaryPatch> patches;
-  for (const Descriptor& d : describe(view.left, view.features.corners, PatchFrame::own_orientation, scales)) {
-    patches.push_back(binary_patch(d));
-  }
-  return patches;
-}
-
 void LoopCloser::remember(const View& view, int segment) {
+  FrameFeatures features = extract_features(camera_, view.left, view.disparity, options_.corners);
+  const auto scales = scales_by_nearness(features, disparity_of_scale_1(camera_));
   Remembered now{.timestamp_ns = view.timestamp_ns,
                  .segment = segment,
                  .world_from_camera = view.world_from_camera,
                  .path_m = 0,
-                 .left = view.left,
-                 .features = extract_features(camera_, view.left, view.disparity, options_.corners)};
+                 .points = std::move(features.points),
+                 .patches = describe(view.left, features.corners, PatchFrame::own_orientation, scales)};
   SE3 corrected = view.world_from_camera;
   if (!views_.empty()) {
     const Remembered& last = views_.back();
@@ -70,7 +79,8 @@ void LoopCloser::add_odometry_edge() {
 std::optional<LoopCorrection> LoopCloser::add(const View& view, int segment) {
   remember(view, segment);
   add_odometry_edge();
-  const auto patches = patches_of(views_.back());
+  std::vector<BinaryPatch> patches;
+  for (const Descriptor& descriptor : views_.back().patches) patches.push_back(binary_patch(descriptor));
   const int num_old = static_cast<int>(views_.size()) - 1 - options_.min_views_apart;
   std::optional<Meeting> best;
   for (const PlaceCandidate& c : index_.query(patches, std::max(num_old, 0), options_.max_candidates)) {
@@ -88,24 +98,21 @@ std::optional<LoopCorrection> LoopCloser::add(const View& view, int segment) {
 /// The same test as between frames: a consistent set of matches under any motion, then all matches that fit it.
 std::optional<LoopCloser::Meeting> LoopCloser::meet(int earlier_view) const {
   const Remembered &earlier = views_[earlier_view], &now = views_.back();
-  std::optional<Meeting> best;
-  for (const PatchFrame patches : {PatchFrame::upright, PatchFrame::own_orientation}) {
-    const auto match = match_frames(camera_, {now.left, now.features}, {earlier.left, earlier.features}, patches,
-                                    options_.matching, options_.consistency);
-    if (!match) continue;
-    std::vector<MotionPoint> points;
-    for (const IndexPair& pair : match->pairs) {
-      const Eigen::Vector3d& p = now.features.points[pair.key];
-      points.push_back({p, point_covariance(camera_, p, options_.motion.image_sigma_px),
-                        project(camera_, earlier.features.points[pair.current])});
-    }
-    const auto motion = refine_motion(camera_, points, match->current_from_key, options_.motion);
-    if (!motion || motion->num_inliers < options_.min_inliers) continue;
-    if (best && best->num_inliers >= motion->num_inliers) continue;
-    best = Meeting{static_cast<int>(views_.size()) - 1, earlier_view, motion->current_from_key, motion->covariance,
-                   motion->num_inliers};
+  const auto match =
+      match_points(camera_, now.points, earlier.points,
+                   match_mutually(now.patches, earlier.patches, options_.matching.max_difference),
+                   options_.matching.min_consistent, options_.consistency);
+  if (!match) return std::nullopt;
+  std::vector<MotionPoint> points;
+  for (const IndexPair& pair : match->pairs) {
+    const Eigen::Vector3d& p = now.points[pair.key];
+    points.push_back({p, point_covariance(camera_, p, options_.motion.image_sigma_px),
+                      project(camera_, earlier.points[pair.current])});
   }
-  return best;
+  const auto motion = refine_motion(camera_, points, match->current_from_key, options_.motion);
+  if (!motion || motion->num_inliers < options_.min_inliers) return std::nullopt;
+  return Meeting{static_cast<int>(views_.size()) - 1, earlier_view, motion->current_from_key, motion->covariance,
+                 motion->num_inliers};
 }
 
 /// The loop's own certainty, and whether odometry can have been that far off.
@@ -137,16 +144,19 @@ bool LoopCloser::confirmed(const Meeting& meeting) const {
   return (a * place - b * place).norm() <= kSamePlace_m && angle_of(a.inverse() * b) <= kSameTurn_rad;
 }
 
-LoopCorrection LoopCloser::close(const Meeting& meeting) {
-  edges_.push_back({meeting.earlier_view, meeting.view, meeting.earlier_from_view, meeting.covariance, true});
-  if (views_[meeting.view].segment != views_[meeting.earlier_view].segment) {
-    corrected_.back() = corrected_[meeting.earlier_view] * meeting.earlier_from_view;
-  }
-  corrected_ = optimise_poses(std::move(corrected_), edges_, options_.graph);
+std::optional<LoopCorrection> LoopCloser::close(const Meeting& meeting) {
+  edges_.push_back({meeting.earlier_view, meeting.view, meeting.earlier_from_view, with_floor(meeting.covariance), true});
   pending_.reset();
   ++num_loops_;
-  return {corrected_, corrected_.back() * views_.back().world_from_camera.inverse(), meeting.view,
-          meeting.earlier_view, meeting.num_inliers};
+  auto start = corrected_;
+  if (views_[meeting.view].segment != views_[meeting.earlier_view].segment) {
+    start.back() = corrected_[meeting.earlier_view] * meeting.earlier_from_view;
+  }
+  auto corrected = optimise_poses(std::move(start), edges_, options_.graph);
+  if (largest_move_m(corrected_, corrected) < options_.least_change_m) return std::nullopt;
+  corrected_ = std::move(corrected);
+  return LoopCorrection{corrected_, corrected_.back() * views_.back().world_from_camera.inverse(), meeting.view,
+                        meeting.earlier_view, meeting.num_inliers};
 }
 
 }  // namespace flogmap

@@ -31,6 +31,7 @@ struct LoopOptions {
   double drift_m = 0.15;      // this much: a loop that says more is false
   double drift_rad_per_m = 0.02;
   double speed_m_s = 1.5;     // and while it was lost, the camera may have moved as fast as this
+  double least_change_m = 0.01;  // smaller corrections are kept for the next loop: no map is rebuilt for them
 };
 
 /// The views' poses once a loop is closed.
@@ -49,9 +50,10 @@ class LoopCloser {
 
   /// `view.world_from_camera` as odometry (and the level start) have it, uncorrected. `segment` changes when
   /// odometry went on after a loss without knowing where (Tracking::segment). The corrected poses if this view
-  /// closes a loop, else nothing.
+  /// closes a loop that moves any view by `least_change_m` or more, else nothing.
   [[nodiscard]] std::optional<LoopCorrection> add(const View& view, int segment = 0);
 
+  /// Closed so far, those that moved hardly anything included.
   [[nodiscard]] int num_loops() const { return num_loops_; }
 
  private:
@@ -60,8 +62,8 @@ class LoopCloser {
     int segment = 0;
     SE3 world_from_camera;  // uncorrected
     double path_m = 0;      // walked until here
-    Image<std::uint8_t> left;
-    FrameFeatures features;
+    std::vector<Eigen::Vector3d> points;  // corners, metres, camera frame
+    std::vector<Descriptor> patches;      // what they look like, in their own orientation and size
   };
   struct Meeting {
     int view = 0, earlier_view = 0;
@@ -72,12 +74,11 @@ class LoopCloser {
 
   void remember(const View& view, int segment);
   void add_odometry_edge();
-  [[nodiscard]] std::vector<BinaryPatch> patches_of(const Remembered& view) const;
   [[nodiscard]] std::optional<Meeting> meet(int earlier_view) const;
   [[nodiscard]] bool plausible(const Meeting& meeting) const;
   [[nodiscard]] bool confirmed(const Meeting& meeting) const;
   [[nodiscard]] SE3 implied_correction(const Meeting& meeting) const;
-  [[nodiscard]] LoopCorrection close(const Meeting& meeting);
+  [[nodiscard]] std::optional<LoopCorrection> close(const Meeting& meeting);
 
   LoopOptions options_;
   StereoCamera camera_;

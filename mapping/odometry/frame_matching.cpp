@@ -27,11 +27,13 @@ SE3 refined(const StereoCamera& camera, const std::vector<PointPair>& pairs, con
   return motion ? motion->current_from_key : start;
 }
 
-std::optional<FrameMatch> solve(const StereoCamera& camera, const FrameFeatures& key, const FrameFeatures& current,
-                                std::vector<IndexPair> pairs, int min_consistent,
-                                const ConsistencyOptions& consistency) {
+}  // namespace
+
+std::optional<FrameMatch> match_points(const StereoCamera& camera, const std::vector<Eigen::Vector3d>& key,
+                                       const std::vector<Eigen::Vector3d>& current, std::vector<IndexPair> pairs,
+                                       int min_consistent, const ConsistencyOptions& consistency) {
   std::vector<PointPair> points;
-  for (const IndexPair& pair : pairs) points.push_back({key.points[pair.key], current.points[pair.current]});
+  for (const IndexPair& pair : pairs) points.push_back({key[pair.key], current[pair.current]});
   FrameMatch match;
   match.consistent = largest_consistent_set(camera, points, consistency);
   if (static_cast<int>(match.consistent.size()) < min_consistent) return std::nullopt;
@@ -49,15 +51,13 @@ std::optional<FrameMatch> solve(const StereoCamera& camera, const FrameFeatures&
   return match;
 }
 
-}  // namespace
-
 std::optional<FrameMatch> match_frames(const StereoCamera& camera, const MatchableFrame& key,
                                        const MatchableFrame& current, PatchFrame patches,
                                        const MatchingOptions& matching, const ConsistencyOptions& consistency) {
   const FrameFeatures &from = key.features, &to = current.features;
   if (from.corners.empty() || to.corners.empty()) return std::nullopt;
   if (patches == PatchFrame::upright) {
-    return solve(camera, from, to, match_mutually(from.upright, to.upright, matching.max_difference),
+    return match_points(camera, from.points, to.points, match_mutually(from.upright, to.upright, matching.max_difference),
                  matching.min_consistent, consistency);
   }
   const float d = median(from.disparity_px);
@@ -67,7 +67,7 @@ std::optional<FrameMatch> match_frames(const StereoCamera& camera, const Matchab
   };
   ConsistencyOptions any_turn = consistency;
   any_turn.max_turn_rad.reset();
-  return solve(camera, from, to, match_mutually(turned(key), turned(current), matching.max_difference),
+  return match_points(camera, from.points, to.points, match_mutually(turned(key), turned(current), matching.max_difference),
                matching.min_consistent, any_turn);
 }
 
