@@ -3,45 +3,27 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <random>
 #include <stdexcept>
 
 #include "mapping/flog/map_planes.hpp"
+#include "tests/mapping/flog/map_canvas.hpp"
 
 namespace flogmap {
 namespace {
 
-constexpr Cell kOccupied{0, 65535, 100, 0}, kFree{65535, 0, 100, 0};
-
-/// A map of three layers in which single cells are set.
-class Canvas {
- public:
-  Canvas() {
-    map_.info.grid = GridSpec{};
-    map_.info.full_confidence_rays = {100, 100, 100};
-  }
-  void set(CellIndex cell, int layer, Cell value) {
-    auto& tile = tiles_[tile_of(cell)];
-    if (!tile) tile = std::make_shared<Tile>(Tile{std::vector<Cell>(3 * kTileColumns), 1});
-    tile->cells[layer * kTileColumns + column_in_tile(cell)] = value;
-    map_.tiles[tile_of(cell)] = tile;
-  }
-  [[nodiscard]] const MapSnapshot& map() const { return map_; }
-
- private:
-  MapSnapshot map_;
-  std::map<TileIndex, std::shared_ptr<Tile>> tiles_;
-};
+using test::kFreeCell;
+using test::kOccupiedCell;
+using test::MapCanvas;
 
 std::uint8_t at(const MapPicture& picture, CellIndex cell) {
   return picture.grey.at(picture.pixel_x(cell), picture.pixel_y(cell));
 }
 
-TEST(MapPicture, IsNorthUpAndDark_WhereOccupied) {
-  Canvas canvas;
-  canvas.set({-3, 70}, 1, kOccupied);
-  canvas.set({5, -2}, 0, kFree);
+TEST(MapPicture, IsNorthUpAndDarkWhereOccupied) {
+  MapCanvas canvas;
+  canvas.set({-3, 70}, 1, kOccupiedCell);
+  canvas.set({5, -2}, 0, kFreeCell);
   const MapArea area = seen_area(canvas.map());
   EXPECT_EQ(area, (MapArea{{-3, -2}, {6, 71}}));
   const MapPicture picture = map_picture(canvas.map(), area, std::nullopt, {});
@@ -53,8 +35,8 @@ TEST(MapPicture, IsNorthUpAndDark_WhereOccupied) {
 }
 
 TEST(MapPicture, FusesByTheLargestOfTheLayersThatMeetTheRobot) {
-  Canvas canvas;
-  canvas.set({1, 1}, 2, kOccupied);
+  MapCanvas canvas;
+  canvas.set({1, 1}, 2, kOccupiedCell);
   Rules rules;
   const MapArea area{{0, 0}, {4, 4}};
   EXPECT_EQ(at(map_picture(canvas.map(), area, std::nullopt, rules), {1, 1}), 0);
@@ -64,7 +46,7 @@ TEST(MapPicture, FusesByTheLargestOfTheLayersThatMeetTheRobot) {
 
 TEST(MapPicture, MotionTakesUnseenGroundForOccupiedAndPlanningForFree) {
   const MapArea area{{0, 0}, {4, 4}};
-  Canvas canvas;
+  MapCanvas canvas;
   Rules rules;
   rules.style = Style::motion;
   EXPECT_EQ(at(map_picture(canvas.map(), area, std::nullopt, rules), {1, 1}), 0);
@@ -73,8 +55,8 @@ TEST(MapPicture, MotionTakesUnseenGroundForOccupiedAndPlanningForFree) {
 }
 
 TEST(MapPicture, GrowsObstaclesByTheRobotsRadiusAcrossTilesAndFromOutside) {
-  Canvas canvas;
-  canvas.set({63, 10}, 0, kOccupied);
+  MapCanvas canvas;
+  canvas.set({63, 10}, 0, kOccupiedCell);
   Rules rules;
   rules.robot_radius_m = 0.1;  // five cells
   const MapArea area{{64, 0}, {80, 20}};
@@ -88,10 +70,10 @@ TEST(MapPicture, GrowsObstaclesByTheRobotsRadiusAcrossTilesAndFromOutside) {
 }
 
 TEST(MapPicture, TrinaryCallsFreeOnlyWhatIsFreeAtEveryHeight) {
-  Canvas canvas;
-  for (int layer = 0; layer < 3; ++layer) canvas.set({0, 0}, layer, kFree);
-  canvas.set({1, 0}, 0, kFree);
-  canvas.set({2, 0}, 2, kOccupied);
+  MapCanvas canvas;
+  for (int layer = 0; layer < 3; ++layer) canvas.set({0, 0}, layer, kFreeCell);
+  canvas.set({1, 0}, 0, kFreeCell);
+  canvas.set({2, 0}, 2, kOccupiedCell);
   const MapArea area{{0, 0}, {4, 1}};
   const MapPicture all = trinary_picture(canvas.map(), area, std::nullopt, {});
   EXPECT_EQ(at(all, {0, 0}), kTrinaryFree);
@@ -103,7 +85,7 @@ TEST(MapPicture, TrinaryCallsFreeOnlyWhatIsFreeAtEveryHeight) {
 
 TEST(MapPicture, RefusesToBeEnormous) {
   const MapArea area{{0, 0}, {1 << 29, 1 << 29}};
-  EXPECT_THROW(map_picture(Canvas().map(), area, std::nullopt, {}), std::length_error);
+  EXPECT_THROW(map_picture(MapCanvas().map(), area, std::nullopt, {}), std::length_error);
 }
 
 TEST(SpreadLargest, EqualsBruteForce) {
@@ -128,7 +110,7 @@ TEST(SpreadLargest, EqualsBruteForce) {
 }
 
 TEST(MapPlanes, HoldEveryStyleOfACell) {
-  Canvas canvas;
+  MapCanvas canvas;
   canvas.set({5, 0}, 1, Cell{32768, 16384, 50, 6554});
   const Tile& tile = *canvas.map().tiles.begin()->second;
   const auto shown = [&](Style style) {
