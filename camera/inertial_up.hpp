@@ -19,9 +19,9 @@ struct Acceleration {
   Eigen::Vector3d in_sensor;
 };
 
-/// The mean over the resting start: the time, at most 2 s, in which the mean of every tenth of a second stays within
-/// 0.4 m/s^2 of that of the first half second. Nothing if that is shorter than half a second or is not gravity
-/// (9.81 +- 0.5 m/s^2).
+/// The mean over the resting start: the time, at most 2 s, in which the mean of every tenth of a second stays
+/// within 0.4 m/s^2 of that of the first half second. Nothing if that is shorter than half a second or is not
+/// gravity (9.81 +- 0.5 m/s^2).
 [[nodiscard]] std::optional<Eigen::Vector3d> resting_acceleration(const std::vector<Acceleration>& samples);
 
 }  // namespace flogmap

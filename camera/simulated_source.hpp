@@ -29,6 +29,7 @@ class SimulatedSource final : public StereoSource {
 
   /// Z of the left camera at the pixels of the newest frame [m]; infinity where there is nothing.
   [[nodiscard]] Image<float> true_depth() const;
+  [[nodiscard]] const Image<float>& true_inverse_depth() const { return left_.inverse_depth; }
   [[nodiscard]] const Scene& scene() const { return renderer_.scene(); }
 
  private:

@@ -20,6 +20,7 @@ EurocCamera read_euroc_camera(const std::filesystem::path& sensor_yaml) {
   set_distortion(camera.intrinsics, yaml::text(root, {file, "distortion_model"}),
                  yaml::numbers(root, {file, "distortion_coefficients"}), file + ": distortion_coefficients");
   camera.body_from_sensor = yaml::transform(root, {file, "T_BS"});
+  camera.rectified = root["rectified"] && yaml::text(root, {file, "rectified"}) == "true";
   return camera;
 }
 
@@ -36,6 +37,7 @@ StereoCalibration read_euroc_pair(const std::filesystem::path& left_yaml,
   calibration.right = right.intrinsics;
   calibration.body_from_left = left.body_from_sensor;
   calibration.right_from_left = right.body_from_sensor.inverse() * left.body_from_sensor;
+  calibration.rectified = left.rectified && right.rectified;
   calibration.dialect = "euroc";
   calibration.origin = left_yaml.string();
   return calibration;

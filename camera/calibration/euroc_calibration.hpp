@@ -11,6 +11,7 @@ namespace flogmap {
 struct EurocCamera {
   CameraIntrinsics intrinsics;
   Eigen::Isometry3d body_from_sensor = Eigen::Isometry3d::Identity();  // T_BS
+  bool rectified = false;  // "rectified: true", which our own recordings of rectified pictures say
 };
 
 /// Throws std::runtime_error naming file, field, value and what is allowed.

@@ -20,7 +20,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLightGridM = 0.08;
+constexpr double kLightGridM = 0.08;  // wider on faces beyond 10 m
+constexpr double kLightGridPoints = 128;
 constexpr int kMaxTexels = 4096;
 constexpr int kSkyRays = 16;
 constexpr double kCornerLight = 0.35;  // of the ambient light reaches the deepest corner
@@ -63,7 +64,9 @@ double from_lamp(const FaceTree& tree, const Face& face, const Vector3d& point, 
 /// Light on a grid of points of the face, coarse because light is smooth; empty if the face is hidden
 /// everywhere, as where two boxes touch.
 Image<float> light_map(const Scene& scene, const FaceTree& tree, const Face& face) {
-  const Eigen::Vector2i size = (face.extent_m / kLightGridM).array().ceil().cast<int>() + 1;
+  if (scene.materials[face.material].glows) return Image<float>(2, 2, 1.0F);
+  const double grid_m = std::max(kLightGridM, face.extent_m.maxCoeff() / kLightGridPoints);
+  const Eigen::Vector2i size = (face.extent_m / grid_m).array().ceil().cast<int>() + 1;
   Image<float> map(size.x(), size.y());
   double most_open = 0;
   for (int j = 0; j < map.height; ++j) {

@@ -19,6 +19,7 @@ struct Material {
   double dark = 0.2;       // reflectance [0, 1] of the pattern's darkest tone
   double bright = 0.8;
   double texel_m = 0;  // size of its texels; 0: the scene's
+  bool glows = false;  // shows its own tones whatever the light, as the sky does
 };
 
 enum class SolidKind { box, cylinder, mesh, hall };  // a hall is a box seen from inside

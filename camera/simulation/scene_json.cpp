@@ -51,6 +51,7 @@ void read_materials(JsonFields& root, const std::string& folder, Scene& scene, M
     material.size_m = entry.number("size_m", material.size_m, 0.001, 1000);
     material.dark = entry.number("dark", material.dark, 0, 1);
     material.bright = entry.number("bright", material.bright, 0, 1);
+    material.glows = entry.flag("glows", false);
     material.texel_m = entry.number("texel_m", 0, 2e-4, 1);
     entry.done();
     index[name] = scene.materials.size();
