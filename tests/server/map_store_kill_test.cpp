@@ -75,8 +75,20 @@ class Walk {
   }
 }
 
-/// Starts a writer, kills it after a while, and returns the last revision that it called durable.
-std::uint64_t durable_when_killed(const std::filesystem::path& path, std::chrono::microseconds after) {
+/// When to kill: after the writer has said so often that something is durable, and then a little later.
+struct Moment {
+  int messages = 0;
+  std::chrono::microseconds later{0};
+};
+
+Moment random_moment(std::mt19937& random) {
+  const bool while_it_opens = random() % 8 == 0;
+  if (while_it_opens) return {0, std::chrono::microseconds(random() % 20'000)};
+  return {1 + static_cast<int>(random() % 4), std::chrono::microseconds(random() % 4'000)};
+}
+
+/// Starts a writer, kills it, and returns the last revision that it called durable.
+std::uint64_t durable_when_killed(const std::filesystem::path& path, const Moment& moment) {
   std::array<int, 2> pipe{};
   if (::pipe(pipe.data()) != 0) throw std::runtime_error("no pipe");
   const pid_t child = ::fork();
@@ -85,13 +97,15 @@ std::uint64_t durable_when_killed(const std::filesystem::path& path, std::chrono
     write_until_killed(path, pipe[1]);
   }
   ::close(pipe[1]);
-  std::this_thread::sleep_for(after);
+  std::uint64_t durable = 0, told = 0;
+  const auto hear = [&] { return ::read(pipe[0], &told, sizeof told) == sizeof told; };
+  for (int i = 0; i < moment.messages && hear(); ++i) durable = told;
+  std::this_thread::sleep_for(moment.later);
   ::kill(child, SIGKILL);
   int status = 0;
   ::waitpid(child, &status, 0);
   EXPECT_TRUE(WIFSIGNALED(status)) << "the writer ended by itself";
-  std::uint64_t durable = 0, told = 0;
-  while (::read(pipe[0], &told, sizeof told) == sizeof told) durable = told;
+  while (hear()) durable = told;
   ::close(pipe[0]);
   return durable;
 }
@@ -102,7 +116,7 @@ void drop_early_pose(StoredMap& map) {
 }
 
 TEST(MapStoreKill, TwoHundredKillsInARowLoseNothingThatWasDurable) {
-  const TemporaryFolder folder;
+  const TemporaryFolder folder = TemporaryFolder::in_memory();
   const auto path = folder / "map.flog";
   { MapStore created(path); }
   Walk walk;
@@ -110,7 +124,7 @@ TEST(MapStoreKill, TwoHundredKillsInARowLoseNothingThatWasDurable) {
   std::uint64_t before = 0;
   int with_progress = 0;
   for (int i = 0; i < kKills; ++i) {
-    const std::uint64_t durable = durable_when_killed(path, std::chrono::microseconds(random() % 40'000));
+    const std::uint64_t durable = durable_when_killed(path, random_moment(random));
     if (before == 0 && durable == 0) continue;  // killed before the map began
     StoredMap map = load_map(path);
     ASSERT_GE(map.revision, std::max(durable, before)) << "kill " << i;

@@ -40,10 +40,16 @@ bool same(const TrajectoryEntry& a, const TrajectoryEntry& b) {
 
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
+TemporaryFolder::TemporaryFolder() : TemporaryFolder(fs::temp_directory_path()) {}
+
+TemporaryFolder TemporaryFolder::in_memory() {
+  const bool there = ::access("/dev/shm", W_OK) == 0;
+  return TemporaryFolder(there ? fs::path("/dev/shm") : fs::temp_directory_path());
+}
+
+TemporaryFolder::TemporaryFolder(const fs::path& where) {
   static std::atomic<int> number = 0;
-  path_ = fs::temp_directory_path() /
-          ("flogmap-test-" + std::to_string(::getpid()) + "-" + std::to_string(number++));
+  path_ = where / ("flogmap-test-" + std::to_string(::getpid()) + "-" + std::to_string(number++));
   fs::create_directories(path_);
 }
 

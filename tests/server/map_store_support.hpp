@@ -15,6 +15,9 @@ namespace flogmap::testing {
 class TemporaryFolder {
  public:
   TemporaryFolder();
+  /// In memory where the machine has such a place: for tests that write so often that they would wait for a
+  /// disk.
+  static TemporaryFolder in_memory();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   ~TemporaryFolder();
@@ -22,6 +25,7 @@ class TemporaryFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
+  explicit TemporaryFolder(const std::filesystem::path& where);
   std::filesystem::path path_;
 };
 
