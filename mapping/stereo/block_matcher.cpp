@@ -11,8 +11,9 @@
 namespace flogmap {
 namespace {
 
-constexpr int kBoxStep = 2;   // a box is 3 x 3 window costs this far apart: 7 x 7 pixels, heavier in the middle
-constexpr int kReach = 3;     // h: the four other boxes stand at (+-h, +-h)
+constexpr int kBoxStep =
+    2;                     // a box is 3 x 3 window costs this far apart: 7 x 7 pixels, heavier in the middle
+constexpr int kReach = 3;  // h: the four other boxes stand at (+-h, +-h)
 constexpr int kLeastLead = 1;
 constexpr int kMaxLeftRightPx = 2;
 constexpr int kRowsPerBand = 60;
@@ -29,7 +30,9 @@ class RowRing {
   }
   [[nodiscard]] int next() const { return next_; }
   std::uint8_t* push() { return row(next_++); }
-  [[nodiscard]] std::uint8_t* row(int y) { return bytes_.data() + static_cast<std::size_t>(y % capacity_) * row_bytes_; }
+  [[nodiscard]] std::uint8_t* row(int y) {
+    return bytes_.data() + static_cast<std::size_t>(y % capacity_) * row_bytes_;
+  }
 
  private:
   int capacity_;
@@ -79,8 +82,9 @@ class BlockMatcher : public DisparityMatcher {
     WinnersBuffer winners(width, kernels_.stride, true);
     for (int y = begin; y < end; ++y) {
       advance_boxes(std::min(y + kReach, last), width, last, work);
-      kernels_.two_best_corners(work.boxes.row(std::max(y - kReach, 0)), work.boxes.row(std::min(y + kReach, last)),
-                                width, kReach, work.corners.data());
+      kernels_.two_best_corners(work.boxes.row(std::max(y - kReach, 0)),
+                                work.boxes.row(std::min(y + kReach, last)), width, kReach,
+                                work.corners.data());
       kernels_.winners_row(work.boxes.row(y), work.corners.data(), work.none.data(), width, padding_.data(),
                            winners.row());
       row_disparities(winners.row(), width, rule_, disparity.row(y));
@@ -136,7 +140,8 @@ class BlockMatcher : public DisparityMatcher {
 
 }  // namespace
 
-std::unique_ptr<DisparityMatcher> make_block_matcher(const StereoOptions& options, const MatchKernels& kernels) {
+std::unique_ptr<DisparityMatcher> make_block_matcher(const StereoOptions& options,
+                                                     const MatchKernels& kernels) {
   return std::make_unique<BlockMatcher>(options, kernels);
 }
 

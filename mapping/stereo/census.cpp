@@ -44,8 +44,8 @@ class PaddedRows {
 
 /// to[i] = from[W-1-i - min_disparity], clamped to the row.
 void reverse(const std::uint8_t* from, int width, int min_disparity, std::uint8_t* to, int size) {
-  const int first = std::clamp(-min_disparity, 0, size);                 // entries before: right of the row
-  const int last = std::clamp(width - min_disparity, first, size);       // entries from here on: left of it
+  const int first = std::clamp(-min_disparity, 0, size);            // entries before: right of the row
+  const int last = std::clamp(width - min_disparity, first, size);  // entries from here on: left of it
   std::memset(to, from[width - 1], static_cast<std::size_t>(first));
   for (int i = first; i < last; ++i) to[i] = from[width - 1 - i - min_disparity];
   std::memset(to + last, from[0], static_cast<std::size_t>(size - last));

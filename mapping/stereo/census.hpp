@@ -24,7 +24,7 @@ class CensusPair {
  private:
   static CensusRow row(const std::vector<std::uint8_t>& planes, int width, int y);
 
-  int left_width_ = 0;   // of one plane's row, slack included
+  int left_width_ = 0;  // of one plane's row, slack included
   int right_width_ = 0;
   std::vector<std::uint8_t> left_;
   std::vector<std::uint8_t> right_;

@@ -65,7 +65,8 @@ void median_3x3(DisparityImage& disparity, int num_threads) {
   const int height = disparity.px.height, num_pieces = (height + kRowsPerPiece - 1) / kRowsPerPiece;
   parallel_for(num_threads, num_pieces, [&](int /*worker*/, int piece) {
     for (int y = piece * kRowsPerPiece; y < std::min(height, (piece + 1) * kRowsPerPiece); ++y) {
-      median_row(from.row(y) + 1, from.row(y + 1) + 1, from.row(y + 2) + 1, disparity.px.width, disparity.px.row(y));
+      median_row(from.row(y) + 1, from.row(y + 1) + 1, from.row(y + 2) + 1, disparity.px.width,
+                 disparity.px.row(y));
     }
   });
 }

@@ -14,7 +14,8 @@ inline int threads_to_use(int num_threads) {
   return num_threads > 0 ? num_threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// Calls work(worker, index) once for every index in [0, count); worker in [0, num_threads) tells threads apart.
+/// Calls work(worker, index) once for every index in [0, count); worker in [0, num_threads) tells threads
+/// apart.
 template <typename Work>
 void parallel_for(int num_threads, int count, const Work& work) {
   std::atomic<int> next{0};

@@ -15,13 +15,13 @@ namespace flogmap {
 namespace {
 
 // Penalties in units of the window cost, 0 to 27: how many more differing comparisons a step is worth.
-constexpr int kSmallStep = 9;         // P1: slanted surfaces
-constexpr int kJump = 90;             // P2: depth edges, where the picture is smooth
-constexpr int kLeastJump = 12;        // P2 across the strongest edge of the picture
-constexpr double kJumpEdge = 0.1;     // P2 = kJump / (1 + kJumpEdge * step of brightness)
+constexpr int kSmallStep = 9;      // P1: slanted surfaces
+constexpr int kJump = 90;          // P2: depth edges, where the picture is smooth
+constexpr int kLeastJump = 12;     // P2 across the strongest edge of the picture
+constexpr double kJumpEdge = 0.1;  // P2 = kJump / (1 + kJumpEdge * step of brightness)
 constexpr int kMaxLeftRightPx = 3;
-constexpr int kMaxCost = 60;  // of the half sum of four paths: on average more than 30 per path
-constexpr int kWarmUpRows = 16;       // paths start this far outside a band
+constexpr int kMaxCost = 60;           // of the half sum of four paths: on average more than 30 per path
+constexpr int kWarmUpRows = 16;        // paths start this far outside a band
 constexpr int kLargestBandPair = 160;  // rows
 
 /// Rows that are matched independently. They depend on the height alone, never on the number of threads.
@@ -44,7 +44,8 @@ std::vector<Band> bands_of(int height) {
 std::array<std::uint8_t, 256> jump_by_brightness_step() {
   std::array<std::uint8_t, 256> jump{};
   for (int step = 0; step < 256; ++step) {
-    jump[step] = static_cast<std::uint8_t>(std::max(kLeastJump, static_cast<int>(kJump / (1 + kJumpEdge * step))));
+    jump[step] =
+        static_cast<std::uint8_t>(std::max(kLeastJump, static_cast<int>(kJump / (1 + kJumpEdge * step))));
   }
   return jump;
 }
@@ -88,7 +89,8 @@ class SgmMatcher : public DisparityMatcher {
   }
 
  private:
-  void match_band(const Image<std::uint8_t>& left, const Band& band, Workspace& work, Image<float>& disparity) {
+  void match_band(const Image<std::uint8_t>& left, const Band& band, Workspace& work,
+                  Image<float>& disparity) {
     compute_costs(left, band, work);
     paths_from_below(left, band, work);
     start_paths(left.width, work);
@@ -161,8 +163,8 @@ class SgmMatcher : public DisparityMatcher {
   void run_along(const Image<std::uint8_t>& left, const Band& band, int y, Workspace& work) const {
     const std::uint8_t* a = left.row(y);
     for (int x = 1; x < left.width; ++x) work.jumps[x] = jump_[std::abs(a[x] - a[x - 1])];
-    kernels_.paths_along(costs_of(band, y, work), left.width, padding_.data(), {kSmallStep, work.jumps.data()},
-                         work.along.data());
+    kernels_.paths_along(costs_of(band, y, work), left.width, padding_.data(),
+                         {kSmallStep, work.jumps.data()}, work.along.data());
   }
 
   WinnersRule rule_;
@@ -176,7 +178,8 @@ class SgmMatcher : public DisparityMatcher {
 
 }  // namespace
 
-std::unique_ptr<DisparityMatcher> make_sgm_matcher(const StereoOptions& options, const MatchKernels& kernels) {
+std::unique_ptr<DisparityMatcher> make_sgm_matcher(const StereoOptions& options,
+                                                   const MatchKernels& kernels) {
   return std::make_unique<SgmMatcher>(options, kernels);
 }
 

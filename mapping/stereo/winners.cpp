@@ -10,7 +10,7 @@ namespace {
 /// Where two lines of the same slope through the three costs meet, px from the middle one, in [-0.5, 0.5].
 float v_fit(int before, int cost, int after) {
   const int slope = std::max(before, after) - cost;
-  return slope > 0 ? 0.5F * static_cast<float>(before - after) / static_cast<float>(slope) : 0.F;
+  return 0.5F * static_cast<float>(before - after) / static_cast<float>(slope);
 }
 
 }  // namespace
@@ -20,12 +20,8 @@ WinnersBuffer::WinnersBuffer(int width, int stride, bool with_second)
 
 WinnersRow WinnersBuffer::row() {
   std::uint8_t* p = bytes_.data();
-  return {p,
-          p + width_,
-          p + 2 * width_,
-          p + 3 * width_,
-          with_second_ ? p + 4 * width_ : nullptr,
-          p + 5 * width_};
+  return {
+      p, p + width_, p + 2 * width_, p + 3 * width_, with_second_ ? p + 4 * width_ : nullptr, p + 5 * width_};
 }
 
 void row_disparities(const WinnersRow& winners, int width, const WinnersRule& rule, float* disparity) {
@@ -37,7 +33,9 @@ void row_disparities(const WinnersRow& winners, int width, const WinnersRule& ru
     if (std::abs(winners.right[width - 1 - x + best] - best) > rule.max_left_right_px) continue;
     if (winners.cost[x] > rule.max_cost) continue;
     if (winners.second && winners.second[x] < winners.cost[x] + rule.least_lead) continue;
-    const float fraction = best == 0 ? 0.F : v_fit(winners.before[x], winners.cost[x], winners.after[x]);
+    const int after = winners.after[x], before = best == 0 ? after : winners.before[x];
+    if (std::max(before, after) == winners.cost[x]) continue;  // no texture: any disparity would do
+    const float fraction = v_fit(before, winners.cost[x], after);
     disparity[x] = static_cast<float>(rule.min_disparity + best) + fraction;
   }
 }

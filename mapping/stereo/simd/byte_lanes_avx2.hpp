@@ -34,7 +34,8 @@ inline Bytes less(Bytes a, Bytes b) {
 inline Bytes select(Bytes mask, Bytes yes, Bytes no) { return {_mm256_blendv_epi8(no.v, yes.v, mask.v)}; }
 template <int kBits>
 Bytes shift_bits_right(Bytes a) {
-  return {_mm256_and_si256(_mm256_srli_epi16(a.v, kBits), _mm256_set1_epi8(static_cast<char>(0xFF >> kBits)))};
+  return {
+      _mm256_and_si256(_mm256_srli_epi16(a.v, kBits), _mm256_set1_epi8(static_cast<char>(0xFF >> kBits)))};
 }
 inline Bytes popcount(Bytes a) {
 #if defined(__AVX512BITALG__) && defined(__AVX512VL__)

@@ -31,7 +31,8 @@ inline Bytes select(Bytes mask, Bytes yes, Bytes no) {
 }
 template <int kBits>
 Bytes shift_bits_right(Bytes a) {
-  return {_mm512_and_si512(_mm512_srli_epi16(a.v, kBits), _mm512_set1_epi8(static_cast<char>(0xFF >> kBits)))};
+  return {
+      _mm512_and_si512(_mm512_srli_epi16(a.v, kBits), _mm512_set1_epi8(static_cast<char>(0xFF >> kBits)))};
 }
 inline Bytes popcount(Bytes a) { return {_mm512_popcnt_epi8(a.v)}; }
 inline Bytes shift_lanes_up(Bytes a, Bytes before) {

@@ -14,7 +14,8 @@ struct Bytes {
 template <typename Operation>
 Bytes lanewise(const Bytes& a, const Bytes& b, Operation operation) {
   Bytes out;
-  for (int i = 0; i < Bytes::kLanes; ++i) out.lane[i] = static_cast<std::uint8_t>(operation(a.lane[i], b.lane[i]));
+  for (int i = 0; i < Bytes::kLanes; ++i)
+    out.lane[i] = static_cast<std::uint8_t>(operation(a.lane[i], b.lane[i]));
   return out;
 }
 

@@ -13,7 +13,9 @@ struct Bytes {
   __m128i v;
 };
 
-inline Bytes load(const std::uint8_t* from) { return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(from))}; }
+inline Bytes load(const std::uint8_t* from) {
+  return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(from))};
+}
 inline void store(std::uint8_t* to, Bytes a) { _mm_storeu_si128(reinterpret_cast<__m128i*>(to), a.v); }
 inline Bytes splat(std::uint8_t value) { return {_mm_set1_epi8(static_cast<char>(value))}; }
 inline Bytes add(Bytes a, Bytes b) { return {_mm_add_epi8(a.v, b.v)}; }

@@ -72,7 +72,7 @@ struct Offset {
 };
 
 // Half of the 5 x 5 window: each of these is compared with its mirror image in the window's centre.
-constexpr Offset kMirrored[12] = {{-2, -2}, {-1, -2}, {0, -2}, {1, -2}, {2, -2},  {-2, -1},
+constexpr Offset kMirrored[12] = {{-2, -2}, {-1, -2}, {0, -2}, {1, -2}, {2, -2}, {-2, -1},
                                   {-1, -1}, {0, -1},  {1, -1}, {2, -1}, {-2, 0}, {-1, 0}};
 // Every second pixel of the window: each of these is compared with the centre.
 constexpr Offset kChecker[12] = {{-2, -2}, {0, -2}, {2, -2}, {-1, -1}, {1, -1}, {-2, 0},
@@ -188,8 +188,8 @@ FLOGMAP_INLINE Path<kVectors> start_of_path() {
 /// One step along a path:  L(d) = C(d) + min(L'(d), L'(d-1) + P1, L'(d+1) + P1, min L' + P2) - min L'.
 /// With costs up to 27 and P2 up to 90, L stays below 118; padding lanes are 255 and never win.
 template <int kVectors>
-FLOGMAP_INLINE Path<kVectors> path_step(const Path<kVectors>& path, const Lanes<kVectors>& C, const Lanes<kVectors>& padding,
-                         Bytes P1, Bytes P2) {
+FLOGMAP_INLINE Path<kVectors> path_step(const Path<kVectors>& path, const Lanes<kVectors>& C,
+                                        const Lanes<kVectors>& padding, Bytes P1, Bytes P2) {
   Lanes<kVectors> stepped;
   for (int i = 0; i < kVectors; ++i) stepped.v[i] = add_saturated(path.L.v[i], P1);
   const Lanes<kVectors> below = from_below(stepped, splat(255)), above = from_above(stepped, splat(255));
@@ -233,8 +233,10 @@ void paths_along(const std::uint8_t* costs, int width, const std::uint8_t* paddi
   Path<kVectors> right = start_of_path<kVectors>(), left = right;
   for (int x = 0; x < width; ++x) {
     const int y = width - 1 - x;  // where the path to the left is
-    right = path_step(right, load_lanes<kVectors>(costs + x * kStride), padding, P1, splat(penalties.jumps[x]));
-    left = path_step(left, load_lanes<kVectors>(costs + y * kStride), padding, P1, splat(penalties.jumps[y + 1]));
+    right =
+        path_step(right, load_lanes<kVectors>(costs + x * kStride), padding, P1, splat(penalties.jumps[x]));
+    left = path_step(left, load_lanes<kVectors>(costs + y * kStride), padding, P1,
+                     splat(penalties.jumps[y + 1]));
     if (x < y) {  // first to come here
       store_lanes(sums + x * kStride, right.L);
       store_lanes(sums + y * kStride, left.L);
@@ -298,7 +300,8 @@ void winners_row(const std::uint8_t* along, const std::uint8_t* down, const std:
       S.v[i] = bit_or(average(load(along + at), vertical), load(padding + i * kLanes));
     }
     right.add_pixel(S);
-    store_lanes(winners.right + (width - 1 - x), right.index);  // later pixels overwrite all but the final lanes
+    store_lanes(winners.right + (width - 1 - x),
+                right.index);  // later pixels overwrite all but the final lanes
     const Bytes cost = least_everywhere(S);
     const int best = first_lane_equal(S, cost);
     store_lanes(costs + 1, S);

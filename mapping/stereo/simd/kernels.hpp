@@ -7,9 +7,9 @@
 
 namespace flogmap {
 
-inline constexpr int kCensusPlanes = 3;    // 24 comparisons per pixel, a byte per plane
-inline constexpr int kCensusReachPx = 2;   // 5 x 5 window
-inline constexpr int kMaxLanes = 64;       // rows that are read in whole registers need this much slack
+inline constexpr int kCensusPlanes = 3;   // 24 comparisons per pixel, a byte per plane
+inline constexpr int kCensusReachPx = 2;  // 5 x 5 window
+inline constexpr int kMaxLanes = 64;      // rows that are read in whole registers need this much slack
 inline constexpr int kMaxVolumeLanes = 256;
 
 /// Pointers to the same row of the three planes.

@@ -4,9 +4,9 @@
 
 #include <cstring>
 #include <random>
-#include <string>
 #include <vector>
 
+#include "mapping/stereo/block_matcher.hpp"
 #include "mapping/stereo/sgm_matcher.hpp"
 #include "tests/mapping/stereo/synthetic_pair.hpp"
 
@@ -18,11 +18,10 @@ bool same_bits(const DisparityImage& a, const DisparityImage& b) {
          std::memcmp(a.px.pixels.data(), b.px.pixels.data(), a.px.size() * sizeof(float)) == 0;
 }
 
-/// A random texture with noise on top, so that every path through the matchers is taken.
+/// Noise makes every path through the matchers be taken.
 RectifiedFrame noisy_pair(std::mt19937& random, int width, int height) {
   RectifiedFrame pair = shifted_pair(random, width, height, 5);
-  std::uniform_int_distribution<int> noise(-20, 20);
-  for (auto& grey : pair.right.pixels) grey = static_cast<std::uint8_t>(std::clamp(grey + noise(random), 0, 255));
+  add_noise(random, 12, pair);
   return pair;
 }
 
@@ -32,11 +31,13 @@ TEST(Kernels, EveryInstructionSetGivesTheBitsOfPlainCpp) {
   for (const int num_disparities : {16, 48, 64, 80, 112, 160, 208, 256}) {
     const RectifiedFrame pair = noisy_pair(random, 61 + num_disparities / 2, 41);
     const StereoOptions options{.num_disparities = num_disparities, .num_threads = 1};
-    const DisparityImage reference = make_sgm_matcher(options, makers.maker[0](num_disparities))->match(pair);
-    for (int i = 1; i < makers.count; ++i) {
-      const MatchKernels kernels = makers.maker[i](num_disparities);
-      EXPECT_TRUE(same_bits(make_sgm_matcher(options, kernels)->match(pair), reference))
-          << kernels.name << " with " << num_disparities << " disparities";
+    for (const auto make : {make_sgm_matcher, make_block_matcher}) {
+      const DisparityImage reference = make(options, makers.maker[0](num_disparities))->match(pair);
+      for (int i = 1; i < makers.count; ++i) {
+        const MatchKernels kernels = makers.maker[i](num_disparities);
+        EXPECT_TRUE(same_bits(make(options, kernels)->match(pair), reference))
+            << kernels.name << " with " << num_disparities << " disparities";
+      }
     }
   }
 }

@@ -36,7 +36,8 @@ int patch_size(const Image<float>& d, int x0, int y0, float max_step) {
 DisparityImage random_patches(std::mt19937& random, int width, int height) {
   std::uniform_real_distribution<float> uniform(0, 1);
   DisparityImage out{Image<float>(width, height)};
-  for (float& d : out.px.pixels) d = uniform(random) < 0.25F ? kInvalid : std::floor(uniform(random) * 4) * 0.6F;
+  for (float& d : out.px.pixels)
+    d = uniform(random) < 0.25F ? kInvalid : std::floor(uniform(random) * 4) * 0.6F;
   return out;
 }
 
