@@ -1,6 +1,7 @@
 #include "server/store/map_reader.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,8 @@
 
 namespace flogmap {
 namespace {
+
+constexpr std::uint64_t kMaxMapBytes = std::uint64_t{16} << 30;
 
 /// One consistent view of the file while another program writes to it; nothing if one is open already.
 class ReadTransaction {
@@ -62,11 +65,22 @@ TileUpdate read_tile(const SqliteStatement& row, const std::string& file, TileCo
   return {index, revision, std::move(tile)};
 }
 
+/// Compressed, a small file may claim any number of tiles; memory is not given to claims.
+void check_memory(const SqliteDatabase& database, const MapSeal& seal, const GridSpec& grid) {
+  const std::uint64_t tile_bytes =
+      sizeof(Cell) * kTileColumns * static_cast<std::uint64_t>(grid.num_layers());
+  if (seal.num_tiles <= kMaxMapBytes / tile_bytes) return;
+  throw std::runtime_error(database.file() + ": holds " + std::to_string(seal.num_tiles) +
+                           " tiles, more than the " + std::to_string(kMaxMapBytes >> 30) +
+                           " GiB of cells that are loaded at once; use smaller maps");
+}
+
 void read_tiles(const SqliteDatabase& database, const MapSeal& seal, StoredMap& map) {
+  check_memory(database, seal, map.info.grid);
   TileCodec codec(map.info.grid.num_layers());
   SqliteStatement row = database.prepare("SELECT x, y, revision, cells, checksum FROM tiles ORDER BY x, y");
   std::uint64_t sum = 0;
-  while (row.step()) {
+  while (map.tiles.size() <= seal.num_tiles && row.step()) {
     map.tiles.push_back(read_tile(row, database.file(), codec));
     const TileUpdate& tile = map.tiles.back();
     if (tile.revision > seal.revision)

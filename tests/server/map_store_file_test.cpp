@@ -7,6 +7,7 @@
 
 #include "server/map_store.hpp"
 #include "server/store/map_digest.hpp"
+#include "server/store/map_meta.hpp"
 #include "server/store/map_rows.hpp"
 #include "server/store/map_schema.hpp"
 #include "server/store/sqlite.hpp"
@@ -204,6 +205,15 @@ TEST_F(ForgedMap, WithATileOfAnotherSizeIsRefusedThoughItsChecksumsAreRight) {
   SqliteDatabase database(path_, SqliteDatabase::Mode::write);
   database.prepare("UPDATE tiles SET cells = ?, checksum = ?").bind(1, cells).bind(2, sum).run();
   EXPECT_THAT(refusal(path_), says(path_, "does not unpack"));
+}
+
+TEST_F(ForgedMap, ThatClaimsMoreTilesThanAnyMemoryHoldsIsRefused) {
+  save_map(path_, random_map(9, kTiny));
+  SqliteDatabase database(path_, SqliteDatabase::Mode::write);
+  MapSeal seal = read_seal(database);
+  seal.num_tiles = 1'000'000;
+  write_seal(database, seal);
+  EXPECT_THAT(refusal(path_), says(path_, "more than the 16 GiB"));
 }
 
 TEST(MapFile, OtherCellsOrLayersThanAskedForAreNamedWithTheWayOut) {
