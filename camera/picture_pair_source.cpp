@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "camera/calibration/calibration_checks.hpp"
 #include "camera/picture_files.hpp"
 
 namespace flogmap {
@@ -22,17 +23,7 @@ PicturePairSource::PicturePairSource(std::string spec, PicturePairList list, boo
     throw std::runtime_error(spec_ + ": no stereo pair" + (why.empty() ? "" : "; " + why));
   }
   find_picture_size();
-  if (list_.calibration) fit_calibration();
-}
-
-void PicturePairSource::fit_calibration() {
-  for (CameraIntrinsics* camera : {&list_.calibration->left, &list_.calibration->right}) {
-    if (camera->width_px == 0) camera->width_px = width_px_, camera->height_px = height_px_;
-    if (camera->width_px == width_px_ && camera->height_px == height_px_) continue;
-    throw std::runtime_error(spec_ + ": pictures are " + std::to_string(width_px_) + "x" +
-                             std::to_string(height_px_) + ", but " + list_.calibration->origin + " is for " +
-                             std::to_string(camera->width_px) + "x" + std::to_string(camera->height_px));
-  }
+  if (list_.calibration) fit_resolution(*list_.calibration, width_px_, height_px_, spec_);
 }
 
 void PicturePairSource::find_picture_size() {

@@ -46,7 +46,6 @@ class PicturePairSource final : public StereoSource {
  private:
   std::optional<StereoFrame> read(const PicturePair& pair);
   void find_picture_size();
-  void fit_calibration();  // a calibration without a resolution gets the pictures'; another one is refused
 
   std::string spec_;
   PicturePairList list_;

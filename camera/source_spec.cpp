@@ -11,6 +11,7 @@
 #include "camera/kitti_source.hpp"
 #include "camera/simulated_source.hpp"
 #include "camera/simulation/scene_json.hpp"
+#include "camera/video_source.hpp"
 
 namespace flogmap {
 namespace {
@@ -30,12 +31,40 @@ std::unique_ptr<StereoSource> open_kitti(const SourceOptions& options, const std
   return open_pairs(options, list_kitti(where, options.calibration_file.empty()));
 }
 
+void require_calibration(const SourceOptions& options) {
+  if (!options.calibration_file.empty()) return;
+  throw std::runtime_error("source '" + options.spec +
+                           "' carries no calibration: give one with --calibration FILE");
+}
+
 std::unique_ptr<StereoSource> open_images(const SourceOptions& options, const std::string& where) {
-  if (options.calibration_file.empty()) {
-    throw std::runtime_error("source '" + options.spec +
-                             "' carries no calibration: give one with --calibration FILE");
-  }
+  require_calibration(options);
   return open_pairs(options, list_images(where));
+}
+
+std::unique_ptr<StereoSource> open_videos(const SourceOptions& options, const std::string& where) {
+  require_calibration(options);
+  const std::size_t comma = where.find(',');
+  if (comma == std::string::npos) throw std::runtime_error("video: must be LEFT,RIGHT, got '" + where + "'");
+  return open_video({.spec = options.spec,
+                     .left = where.substr(0, comma),
+                     .right = where.substr(comma + 1),
+                     .loop = options.loop,
+                     .calibration = read_calibration(options.calibration_file)});
+}
+
+std::unique_ptr<StereoSource> open_side_by_side(const SourceOptions& options, const std::string& where) {
+  require_calibration(options);
+  return open_video({.spec = options.spec,
+                     .left = where,
+                     .right = "",
+                     .loop = options.loop,
+                     .calibration = read_calibration(options.calibration_file)});
+}
+
+std::unique_ptr<StereoSource> no_live_cameras(const SourceOptions& options, const std::string&) {
+  throw std::runtime_error("source '" + options.spec +
+                           "': this build has no live cameras (libcamera was not found)");
 }
 
 std::unique_ptr<StereoSource> open_simulated(const SourceOptions& options, const std::string& where) {
@@ -51,7 +80,10 @@ constexpr std::array kKinds{
     Kind{"euroc", "DIR", open_euroc},
     Kind{"kitti", "DIR", open_kitti},
     Kind{"images", "LEFT_GLOB,RIGHT_GLOB", open_images},
+    Kind{"video", "LEFT,RIGHT", open_videos},
+    Kind{"sbs", "FILE", open_side_by_side},
     Kind{"sim", "SCENE", open_simulated},
+    Kind{"libcamera", "LEFT_ID,RIGHT_ID", no_live_cameras},
 };
 
 }  // namespace

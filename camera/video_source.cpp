@@ -1,5 +1,6 @@
 #include "camera/video_source.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -8,6 +9,8 @@
 #include <opencv2/videoio.hpp>
 #include <stdexcept>
 #include <utility>
+
+#include "camera/calibration/calibration_checks.hpp"
 
 namespace flogmap {
 namespace {
@@ -51,7 +54,8 @@ Picture picture_from(const cv::Mat& frame) {
   Picture picture{frame.cols, frame.rows, frame.channels(), 8, {}};
   const std::size_t row_bytes = frame.cols * frame.elemSize();
   picture.bytes.resize(row_bytes * frame.rows);
-  for (int y = 0; y < frame.rows; ++y) std::memcpy(picture.bytes.data() + y * row_bytes, frame.ptr(y), row_bytes);
+  for (int y = 0; y < frame.rows; ++y)
+    std::memcpy(picture.bytes.data() + y * row_bytes, frame.ptr(y), row_bytes);
   return picture;
 }
 
@@ -92,7 +96,8 @@ class VideoSource final : public StereoSource {
   [[nodiscard]] SkippedFrames skipped() const override { return skipped_; }
 
   bool seek(std::int64_t timestamp_ns) override {
-    const double frames = 1e-9 * static_cast<double>(std::max<std::int64_t>(timestamp_ns, 0)) * left_.rate_hz();
+    const double frames =
+        1e-9 * static_cast<double>(std::max<std::int64_t>(timestamp_ns, 0)) * left_.rate_hz();
     const auto frame = static_cast<std::int64_t>(std::ceil(frames - 1e-6));
     return left_.seek(frame) && (!right_ || right_->seek(frame));
   }
@@ -109,29 +114,24 @@ class VideoSource final : public StereoSource {
     const bool has_left = left_.read(left);
     const bool has_right = right_ ? right_->read(right) : has_left;
     if (has_left != has_right) {
-      skipped_ = {skipped_.count + 1, (has_left ? right_->file() : left_.file()) + ": ends before the other video"};
+      skipped_ = {skipped_.count + 1,
+                  (has_left ? right_->file() : left_.file()) + ": ends before the other video"};
     }
     if (!has_left || !has_right) return std::nullopt;
     if (right_) return StereoFrame{time_ns, picture_from(left), picture_from(right)};
     const int half = left.cols / 2;
-    return StereoFrame{time_ns, picture_from(left.colRange(0, half)), picture_from(left.colRange(half, 2 * half))};
+    return StereoFrame{time_ns, picture_from(left.colRange(0, half)),
+                       picture_from(left.colRange(half, 2 * half))};
   }
 
   void check_sizes(const StereoFrame& frame) {
     const int width = frame.left.width, height = frame.left.height;
     if (width != frame.right.width || height != frame.right.height) {
-      throw std::runtime_error(files_.spec + ": left and right must have one size, got " + std::to_string(width) + "x" +
-                               std::to_string(height) + " and " + std::to_string(frame.right.width) + "x" +
-                               std::to_string(frame.right.height));
+      throw std::runtime_error(files_.spec + ": left and right must have one size, got " +
+                               std::to_string(width) + "x" + std::to_string(height) + " and " +
+                               std::to_string(frame.right.width) + "x" + std::to_string(frame.right.height));
     }
-    if (!files_.calibration) return;
-    for (CameraIntrinsics* camera : {&files_.calibration->left, &files_.calibration->right}) {
-      if (camera->width_px == 0) camera->width_px = width, camera->height_px = height;
-      if (camera->width_px == width && camera->height_px == height) continue;
-      throw std::runtime_error(files_.spec + ": pictures are " + std::to_string(width) + "x" + std::to_string(height) +
-                               ", but " + files_.calibration->origin + " is for " + std::to_string(camera->width_px) +
-                               "x" + std::to_string(camera->height_px));
-    }
+    if (files_.calibration) fit_resolution(*files_.calibration, width, height, files_.spec);
   }
 
   VideoFiles files_;
@@ -143,6 +143,8 @@ class VideoSource final : public StereoSource {
 
 }  // namespace
 
-std::unique_ptr<StereoSource> open_video(VideoFiles files) { return std::make_unique<VideoSource>(std::move(files)); }
+std::unique_ptr<StereoSource> open_video(VideoFiles files) {
+  return std::make_unique<VideoSource>(std::move(files));
+}
 
 }  // namespace flogmap

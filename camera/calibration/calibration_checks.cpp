@@ -107,4 +107,16 @@ void set_pinhole(CameraIntrinsics& camera, double fx, double fy, double cx, doub
   camera.cy_px = cy;
 }
 
+void fit_resolution(StereoCalibration& calibration, int width_px, int height_px, const std::string& where) {
+  const auto size = [](int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+  };
+  for (CameraIntrinsics* camera : {&calibration.left, &calibration.right}) {
+    if (camera->width_px == 0) camera->width_px = width_px, camera->height_px = height_px;
+    if (camera->width_px == width_px && camera->height_px == height_px) continue;
+    throw std::runtime_error(where + ": pictures are " + size(width_px, height_px) + ", but " +
+                             calibration.origin + " is for " + size(camera->width_px, camera->height_px));
+  }
+}
+
 }  // namespace flogmap

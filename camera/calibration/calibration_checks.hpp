@@ -26,4 +26,8 @@ void set_resolution(CameraIntrinsics& camera, const std::vector<double>& width_h
 void set_pinhole(CameraIntrinsics& camera, double fx, double fy, double cx, double cy,
                  const std::string& where);
 
+/// Gives a calibration that knows no resolution (0) that of the pictures; throws std::runtime_error starting
+/// with `where` if it is for another one.
+void fit_resolution(StereoCalibration& calibration, int width_px, int height_px, const std::string& where);
+
 }  // namespace flogmap
