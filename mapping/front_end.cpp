@@ -30,8 +30,8 @@ struct FrontEnd::Parts {
     std::optional<View> view;
   };
 
-  Parts(const FrontEndOptions& given_options, Rectifier given_rectifier, std::optional<GivenPoses> given_poses,
-        std::optional<Eigen::Vector3d> up)
+  Parts(const FrontEndOptions& given_options, Rectifier given_rectifier,
+        std::optional<GivenPoses> given_poses, std::optional<Eigen::Vector3d> up)
       : options(given_options),
         rectifier(std::move(given_rectifier)),
         matcher(make_matcher(options.stereo, rectifier.camera())),
@@ -40,7 +40,8 @@ struct FrontEnd::Parts {
         poses(std::move(given_poses)),
         up_in_camera(std::move(up)) {
     if (options.align == AlignMode::gravity && !up_in_camera) {
-      throw std::runtime_error("--align gravity: the source has no inertial sensor; allowed: auto|none|ground");
+      throw std::runtime_error(
+          "--align gravity: the source has no inertial sensor; allowed: auto|none|ground");
     }
     start_anew();
   }
@@ -87,7 +88,8 @@ struct FrontEnd::Parts {
 
 FrontEnd::FrontEnd(const FrontEndOptions& options, Rectifier rectifier, std::optional<GivenPoses> poses,
                    std::optional<Eigen::Vector3d> up_in_camera)
-    : parts_(std::make_unique<Parts>(options, std::move(rectifier), std::move(poses), std::move(up_in_camera))) {}
+    : parts_(std::make_unique<Parts>(options, std::move(rectifier), std::move(poses),
+                                     std::move(up_in_camera))) {}
 FrontEnd::~FrontEnd() = default;
 FrontEnd::FrontEnd(FrontEnd&&) noexcept = default;
 FrontEnd& FrontEnd::operator=(FrontEnd&&) noexcept = default;
@@ -119,8 +121,8 @@ Tracking FrontEnd::Parts::track(const FrontEndResult& result) {
   return tracking;
 }
 
-/// Puts the frame into the world, as a place of the path and, if it shows something new, as a view. Until it is
-/// decided which way is up, frames wait.
+/// Puts the frame into the world, as a place of the path and, if it shows something new, as a view. Until it
+/// is decided which way is up, frames wait.
 void FrontEnd::Parts::place(FrontEndResult& result) {
   const Tracking& tracking = result.tracking;
   const std::int64_t timestamp_ns = result.rectified->timestamp_ns;

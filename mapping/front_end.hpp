@@ -53,12 +53,13 @@ struct FrontEndResult {
   StageTimes times;
 };
 
-/// rectify -> match -> filter -> track -> select. Knows neither threads nor the network. Pure: the same frames
-/// give the same results.
+/// rectify -> match -> filter -> track -> select. Knows neither threads nor the network. Pure: the same
+/// frames give the same results.
 class FrontEnd {
  public:
-  /// `poses`: map with these instead of odometry. `up_in_camera`: unit vector against gravity in the rectified
-  /// left camera of the first frame, if a sensor says so. Throws std::runtime_error if AlignMode::gravity lacks it.
+  /// `poses`: map with these instead of odometry. `up_in_camera`: unit vector against gravity in the
+  /// rectified left camera of the first frame, if a sensor says so. Throws std::runtime_error if
+  /// AlignMode::gravity lacks it.
   FrontEnd(const FrontEndOptions& options, Rectifier rectifier, std::optional<GivenPoses> poses,
            std::optional<Eigen::Vector3d> up_in_camera);
   ~FrontEnd();
@@ -67,8 +68,8 @@ class FrontEnd {
 
   FrontEndResult process(const StereoFrame& frame);
 
-  /// The source has ended. If it is still undecided which way is up, it is decided by what was seen: `path` and
-  /// `views` of the answer hold the frames that waited for it.
+  /// The source has ended. If it is still undecided which way is up, it is decided by what was seen: `path`
+  /// and `views` of the answer hold the frames that waited for it.
   FrontEndResult finish();
 
   /// Forgets the path; the next frame is a first frame again.

@@ -128,7 +128,8 @@ CaptureControl::Clock::time_point CaptureControl::due(std::int64_t timestamp_ns)
   }
   if (anchor_) {
     const double wait_s = static_cast<double>(timestamp_ns - anchor_ns_) / kNsPerSecond / rate_;
-    const auto at = *anchor_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
+    const auto at =
+        *anchor_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
     if (at > now - kMaxLag) return at;
   }
   anchor_ = now;

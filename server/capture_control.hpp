@@ -18,8 +18,8 @@ struct CaptureTurn {
   double position_s = 0;  // of a seek
 };
 
-/// The one-slot mailbox between whoever steers (network side, any thread) and the capture thread, and the state
-/// machine that both see.
+/// The one-slot mailbox between whoever steers (network side, any thread) and the capture thread, and the
+/// state machine that both see.
 class CaptureControl final : public SessionControl {
  public:
   /// `rate`: 1 as recorded, 0 as fast as possible. Live sources ignore it.

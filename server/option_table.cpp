@@ -108,8 +108,9 @@ void OptionTable::number(const std::string& name, const std::string& value_name,
     if (value < low || value > high) throw UsageError("allowed: " + range_text(low, high));
     target = value;
   };
-  add({.name = name, .value_name = value_name, .help = help, .parse = parse,
-       .show = [&target] { return show_number(target); }});
+  add({.name = name, .value_name = value_name, .help = help, .parse = parse, .show = [&target] {
+         return show_number(target);
+       }});
 }
 
 void OptionTable::integer(const std::string& name, const std::string& value_name, int& target, int low,
@@ -121,8 +122,9 @@ void OptionTable::integer(const std::string& name, const std::string& value_name
     }
     target = static_cast<int>(value);
   };
-  add({.name = name, .value_name = value_name, .help = help, .parse = parse,
-       .show = [&target] { return std::to_string(target); }});
+  add({.name = name, .value_name = value_name, .help = help, .parse = parse, .show = [&target] {
+         return std::to_string(target);
+       }});
 }
 
 void OptionTable::on_off(const std::string& name, bool& target, const std::string& help) {
@@ -139,14 +141,16 @@ void OptionTable::flag(const std::string& name, bool& target, const std::string&
 }
 
 void OptionTable::attach(CLI::App& app) {
-  app.add_option("--config", config_file_, "JSON file of options; the command line and FLOGMAP_... win over it")
+  app.add_option("--config", config_file_,
+                 "JSON file of options; the command line and FLOGMAP_... win over it")
       ->type_name("FILE");
   for (const Option& option : options_) {
     const auto keep = [this, name = option.name](const std::string& value) {
       from_command_line_.emplace_back(name, value);
     };
     if (option.value_name.empty()) {
-      app.add_flag_callback("--" + option.name, [keep] { keep("on"); }, option.help);
+      app.add_flag_callback(
+          "--" + option.name, [keep] { keep("on"); }, option.help);
       continue;
     }
     const std::string shown = option.show();
@@ -216,15 +220,14 @@ void OptionTable::set(const std::string& name, const std::string& value, const s
 }
 
 Option* OptionTable::find(const std::string& name) {
-  const auto found =
-      std::find_if(options_.begin(), options_.end(), [&](const Option& option) { return option.name == name; });
+  const auto found = std::find_if(options_.begin(), options_.end(),
+                                  [&](const Option& option) { return option.name == name; });
   return found == options_.end() ? nullptr : &*found;
 }
 
 bool OptionTable::is_default(const std::string& name) const {
-  return std::any_of(options_.begin(), options_.end(), [&](const Option& option) {
-    return option.name == name && option.origin == "default";
-  });
+  return std::any_of(options_.begin(), options_.end(),
+                     [&](const Option& option) { return option.name == name && option.origin == "default"; });
 }
 
 std::vector<std::string> OptionTable::names() const {

@@ -1,5 +1,6 @@
-// Options as a table: each has one name for the command line (--cell-size), the environment (FLOGMAP_CELL_SIZE)
-// and the config file ("cell-size"), one text form, and remembers where its value came from.
+// Options as a table: each has one name for the command line (--cell-size), the environment
+// (FLOGMAP_CELL_SIZE) and the config file ("cell-size"), one text form, and remembers where its value came
+// from.
 #pragma once
 
 #include <functional>
@@ -72,8 +73,8 @@ class OptionTable {
   void attach(CLI::App& app);
 
   /// Takes over config file (--config, if given), environment and command line, in rising order.
-  /// Throws UsageError naming file or variable, key, value and what is allowed. Keys that only `known_elsewhere`
-  /// has belong to other commands and are passed over.
+  /// Throws UsageError naming file or variable, key, value and what is allowed. Keys that only
+  /// `known_elsewhere` has belong to other commands and are passed over.
   void apply(const std::vector<std::string>& known_elsewhere);
 
   void set(const std::string& name, const std::string& value, const std::string& origin);

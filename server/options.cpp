@@ -52,8 +52,9 @@ Option auto_integer(const std::string& name, int& target, int low, int high, con
     }
     target = static_cast<int>(value);
   };
-  return {.name = name, .value_name = "N|auto", .help = help, .parse = parse,
-          .show = [&target] { return target == 0 ? std::string("auto") : std::to_string(target); }};
+  return {.name = name, .value_name = "N|auto", .help = help, .parse = parse, .show = [&target] {
+            return target == 0 ? std::string("auto") : std::to_string(target);
+          }};
 }
 
 void add_grid_options(OptionTable& table, Options& options) {
@@ -64,7 +65,8 @@ void add_grid_options(OptionTable& table, Options& options) {
              .help = "boundaries of the layers, metres above the floor; start 3-5 cm above it",
              .parse = [&flog](const std::string& text) { flog.grid.layer_bounds_m = parse_numbers(text, 0); },
              .show = [&flog] { return joined(flog.grid.layer_bounds_m); }});
-  table.number("max-range", "METRES", flog.max_range_m, 0.1, 1000, "farther points only say where it is free");
+  table.number("max-range", "METRES", flog.max_range_m, 0.1, 1000,
+               "farther points only say where it is free");
   table.integer("row-step", "N", flog.row_step, 1, 64, "use every N-th row of a view");
   table.number("view-translation-cells", "CELLS", options.front_end.views.translation_cells, 0.001, 1e6,
                "a view is mapped if the camera moved this far since the last mapped one");
@@ -86,23 +88,28 @@ void add_grid_options(OptionTable& table, Options& options) {
   table.choice<IntegratorKind>("integrator", flog.integrator,
                                {{"fan", IntegratorKind::fan}, {"ray", IntegratorKind::ray}},
                                "fan: fast; ray: one ray after the other, the reference");
-  table.flag("paper-mode", flog.paper_mode, "literally as in the paper: no floor of the error, eq. (5) as printed");
+  table.flag("paper-mode", flog.paper_mode,
+             "literally as in the paper: no floor of the error, eq. (5) as printed");
 }
 
 void add_start_options(OptionTable& table, Options& options) {
   table.text("poses", "FILE", options.poses_file,
              "map with these poses (TUM or EuRoC csv) instead of the estimated motion");
-  table.choice<PosesFrame>("poses-frame", options.poses_frame,
-                           {{"rectified", PosesFrame::rectified}, {"raw", PosesFrame::raw}, {"body", PosesFrame::body}},
-                           "what --poses and --first-pose are poses of: the rectified or the raw left camera, or the body");
-  table.add({.name = "first-pose",
-             .value_name = "x,y,z,qx,qy,qz,qw",
-             .help = "where the camera stands at first, in the world (z up, floor at 0)",
-             .parse = [&options](const std::string& text) { options.first_pose = parse_pose(text); },
-             .show = [&options] { return options.first_pose ? pose_text(*options.first_pose) : std::string(); }});
+  table.choice<PosesFrame>(
+      "poses-frame", options.poses_frame,
+      {{"rectified", PosesFrame::rectified}, {"raw", PosesFrame::raw}, {"body", PosesFrame::body}},
+      "what --poses and --first-pose are poses of: the rectified or the raw left camera, or the body");
+  table.add(
+      {.name = "first-pose",
+       .value_name = "x,y,z,qx,qy,qz,qw",
+       .help = "where the camera stands at first, in the world (z up, floor at 0)",
+       .parse = [&options](const std::string& text) { options.first_pose = parse_pose(text); },
+       .show = [&options] { return options.first_pose ? pose_text(*options.first_pose) : std::string(); }});
   table.choice<AlignMode>("align", options.front_end.align,
-                          {{"auto", AlignMode::automatic}, {"none", AlignMode::none},
-                           {"gravity", AlignMode::gravity}, {"ground", AlignMode::ground}},
+                          {{"auto", AlignMode::automatic},
+                           {"none", AlignMode::none},
+                           {"gravity", AlignMode::gravity},
+                           {"ground", AlignMode::ground}},
                           "how the world is levelled without --first-pose");
 }
 
@@ -127,7 +134,8 @@ void add_source_options(OptionTable& table, Options& options) {
 }
 
 void add_stereo_options(OptionTable& table, StereoOptions& stereo) {
-  table.choice<MatcherKind>("matcher", stereo.matcher, {{"block", MatcherKind::block}, {"sgm", MatcherKind::sgm}},
+  table.choice<MatcherKind>("matcher", stereo.matcher,
+                            {{"block", MatcherKind::block}, {"sgm", MatcherKind::sgm}},
                             "dense stereo method");
   table.integer("min-disparity", "PX", stereo.min_disparity, -1024, 1024, "smallest disparity searched");
   table.add(auto_integer("num-disparities", stereo.num_disparities, 1, 1024,
@@ -140,10 +148,12 @@ void add_mapping_options(OptionTable& table, Options& options) {
   add_stereo_options(table, options.front_end.stereo);
   add_start_options(table, options);
   table.choice<Operators>("operators", options.serve.operators,
-                          {{"algebraic", Operators::algebraic}, {"minmax", Operators::minmax},
+                          {{"algebraic", Operators::algebraic},
+                           {"minmax", Operators::minmax},
                            {"lukasiewicz", Operators::lukasiewicz}},
                           "fuzzy and, or and not of the map's rules");
-  table.integer("threads", "N", options.num_threads, 0, kMaxThreads, "per stage; 0 = every core. Same map for any N");
+  table.integer("threads", "N", options.num_threads, 0, kMaxThreads,
+                "per stage; 0 = every core. Same map for any N");
 }
 
 void add_serve_options(OptionTable& table, Options& options) {
@@ -162,15 +172,19 @@ void add_serve_options(OptionTable& table, Options& options) {
     serve.listen_address = address.empty() ? "0.0.0.0" : address;
     serve.port = static_cast<std::uint16_t>(port);
   };
-  table.add({.name = "listen", .value_name = "ADDRESS:PORT",
-             .help = "where to serve; port 0 takes a free one", .parse = parse_listen, .show = show_listen});
+  table.add({.name = "listen",
+             .value_name = "ADDRESS:PORT",
+             .help = "where to serve; port 0 takes a free one",
+             .parse = parse_listen,
+             .show = show_listen});
   table.choice<bool>("pace", options.as_fast_as_possible, {{"realtime", false}, {"fast", true}},
                      "replay a recording as it was recorded, or as fast as possible");
   table.flag("loop", options.source.loop, "start a recording again at its end, with a new map");
   table.text("store", "FILE", options.store, "keep the map here; it goes on after a restart");
   table.text("web-root", "DIR", serve.web_root, "folder of the built page");
   table.number("robot-radius", "METRES", serve.robot.radius_m, 0, 10, "of routes and the inflated maps");
-  table.number("robot-height", "METRES", serve.robot.height_m, 0, 100, "layers above it do not matter; 0 = all do");
+  table.number("robot-height", "METRES", serve.robot.height_m, 0, 100,
+               "layers above it do not matter; 0 = all do");
   table.integer("max-connections", "N", serve.max_connections, 1, 65535, "at a time");
   table.integer("max-connections-per-address", "N", serve.max_connections_per_address, 1, 65535, "at a time");
   table.flag("insecure-no-auth", serve.insecure_no_auth, "serve other machines without a token");

@@ -11,17 +11,18 @@
 
 namespace flogmap {
 
-/// All that a user can choose, with its defaults; filled by an OptionTable, checked once, passed down in parts.
+/// All that a user can choose, with its defaults; filled by an OptionTable, checked once, passed down in
+/// parts.
 struct Options {
   SourceOptions source;
   FrontEndOptions front_end;
   FlogOptions flog;
   ServeOptions serve;
 
-  std::string poses_file;                      // map with these poses instead of odometry
-  PosesFrame poses_frame = PosesFrame::raw;    // what --poses and --first-pose are poses of
-  std::optional<SE3> first_pose;               // world_from_<poses_frame>
-  bool as_fast_as_possible = false;            // --pace fast
+  std::string poses_file;                    // map with these poses instead of odometry
+  PosesFrame poses_frame = PosesFrame::raw;  // what --poses and --first-pose are poses of
+  std::optional<SE3> first_pose;             // world_from_<poses_frame>
+  bool as_fast_as_possible = false;          // --pace fast
   bool loop_closure = true;
   std::string store;     // serve: the map's file
   std::string maps_dir;  // serve: stored maps beside the live one

@@ -74,7 +74,8 @@ void Pipeline::run_stage(Stage stage) {
   }
 }
 
-// ------------------------------------------------------------------------------------------------ capture thread
+// ------------------------------------------------------------------------------------------------ capture
+// thread
 
 void Pipeline::capture() {
   const std::string epoch = options_.continued.epoch;
@@ -84,9 +85,15 @@ void Pipeline::capture() {
   for (bool more = true; more;) {
     const CaptureTurn turn = control_.await_turn();
     switch (turn.kind) {
-      case CaptureTurn::Kind::stop: more = false; break;
-      case CaptureTurn::Kind::reset: restart("reset by operator", 0); break;
-      case CaptureTurn::Kind::seek: go_to(turn.position_s); break;
+      case CaptureTurn::Kind::stop:
+        more = false;
+        break;
+      case CaptureTurn::Kind::reset:
+        restart("reset by operator", 0);
+        break;
+      case CaptureTurn::Kind::seek:
+        go_to(turn.position_s);
+        break;
       case CaptureTurn::Kind::read:
         if (!read_frame()) {
           at_end();
@@ -148,7 +155,8 @@ void Pipeline::go_to(double position_s) {
   }
 }
 
-// ------------------------------------------------------------------------------------------------- vision thread
+// ------------------------------------------------------------------------------------------------- vision
+// thread
 
 void Pipeline::see() {
   while (std::optional<Captured> captured = frames_.pop()) {
@@ -235,13 +243,15 @@ StatusReport Pipeline::status() const {
   report.skipped_frames = static_cast<std::uint64_t>(skipped.count);
   report.dropped_frames = frames_.dropped();
   if (skipped.count > 0) {
-    report.warnings.push_back(std::to_string(skipped.count) + " frames skipped; last: " + skipped.last_reason);
+    report.warnings.push_back(std::to_string(skipped.count) +
+                              " frames skipped; last: " + skipped.last_reason);
   }
   report.stages = statistics_.report();
   return report;
 }
 
-// ---------------------------------------------------------------------------------------------------- map thread
+// ---------------------------------------------------------------------------------------------------- map
+// thread
 
 void Pipeline::map() {
   while (std::optional<ForMap> item = views_.pop()) {

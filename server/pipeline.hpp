@@ -1,5 +1,5 @@
-// THE composition: threads and queues between source, front end and map. Print this and mapping/front_end.cpp,
-// and you know the program.
+// THE composition: threads and queues between source, front end and map. Print this and
+// mapping/front_end.cpp, and you know the program.
 #pragma once
 
 #include <chrono>
@@ -22,8 +22,8 @@
 
 namespace flogmap {
 
-/// Who hears what the pipeline finds: the hub and the store of `serve`, the files of `map`. Calls come from the
-/// vision and the map thread and must return soon.
+/// Who hears what the pipeline finds: the hub and the store of `serve`, the files of `map`. Calls come from
+/// the vision and the map thread and must return soon.
 class PipelineObserver {
  public:
   virtual ~PipelineObserver() = default;
@@ -51,7 +51,8 @@ struct PipelineOptions {
   ContinuedMap continued;
 };
 
-/// source -> frames[2] -> front end -> views[4] -> map -> observer. Three threads, each owning its part outright.
+/// source -> frames[2] -> front end -> views[4] -> map -> observer. Three threads, each owning its part
+/// outright.
 class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, std::unique_ptr<StereoSource> source, FrontEnd front_end,
@@ -114,8 +115,8 @@ class Pipeline {
   BoundedQueue<Captured> frames_;
   BoundedQueue<ForMap> views_;
 
-  Generation generation_;             // capture thread
-  std::int64_t frames_read_ = 0;      // of this generation
+  Generation generation_;              // capture thread
+  std::int64_t frames_read_ = 0;       // of this generation
   std::uint64_t seen_generation_ = 0;  // vision thread
   std::chrono::steady_clock::time_point status_at_;
   std::uint64_t frames_at_status_ = 0;

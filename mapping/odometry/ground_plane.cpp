@@ -7,11 +7,14 @@
 namespace flogmap {
 namespace {
 
-constexpr int kNumSeeds = 16;              // pieces from which a search starts
+constexpr int kNumSeeds = 24;  // pieces from which a search starts
 constexpr int kLeastPatches = 12;
-constexpr double kNearlyAsLarge = 0.4;     // a lower floor may be this much smaller than the largest
-constexpr double kLeastHeight_m = 0.05;    // of the origin above the floor
+constexpr double kLeastShare = 0.04;     // of all that face up; a few far pieces are large but tell nothing
+constexpr double kNearlyAsLarge = 0.4;   // a lower floor may be this much smaller than the largest
+constexpr double kLeastHeight_m = 0.05;  // of the origin above the floor
 constexpr double kSameNormal_rad = 0.2;
+constexpr double kFloorSpread_m = 0.4;  // of a far floor's pieces along an up that is not exact yet
+constexpr double kParallel_rad = 0.06;  // floors of one building
 constexpr double kNearlyVertical_rad = 0.1;
 
 bool within(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle_rad) {
@@ -30,26 +33,81 @@ class GroundSearch {
 
   [[nodiscard]] std::optional<GroundPlane> best() const {
     std::vector<GroundPlane> planes;
-    const std::size_t step = std::max<std::size_t>(1, level_.size() / kNumSeeds);
-    double largest_m2 = 0;  // by area: a table close by fills more of the picture than the floor behind it
-    for (std::size_t i = 0; i < level_.size(); i += step) {
-      const auto plane = grow(level_[i]->normal, level_[i]->centre);
-      if (!plane) continue;
-      planes.push_back(*plane);
-      largest_m2 = std::max(largest_m2, plane->area_m2);
+    const GroundPlane* surest = nullptr;  // has most pieces: it tells best which way is up
+    for (const SurfacePatch* seed : seeds()) {
+      const auto plane = grow(seed->normal, seed->centre);
+      if (plane && plane->num_patches >= kLeastShare * static_cast<double>(level_.size()))
+        planes.push_back(*plane);
     }
-    const GroundPlane* lowest = nullptr;
     for (const GroundPlane& plane : planes) {
-      const bool large = plane.area_m2 >= kNearlyAsLarge * largest_m2;
-      if (large && (!lowest || plane.height_m > lowest->height_m + options_.slab_m ||
-                    (plane.height_m > lowest->height_m - options_.slab_m && plane.area_m2 > lowest->area_m2))) {
-        lowest = &plane;
-      }
+      if (!surest || plane.num_patches > surest->num_patches) surest = &plane;
     }
-    return lowest ? std::optional(*lowest) : std::nullopt;
+    const GroundPlane* lowest = surest;
+    for (const GroundPlane& plane : planes) {
+      // By area: a table close by fills more of the picture than the floor behind it.
+      const bool large = plane.area_m2 >= kNearlyAsLarge * surest->area_m2;
+      const bool parallel = within(plane.up, surest->up, kParallel_rad);
+      if (large && parallel && plane.height_m > lowest->height_m + options_.slab_m) lowest = &plane;
+    }
+    if (!lowest) return std::nullopt;
+    const auto below = floor_below(*lowest);
+    return below ? below : *lowest;
   }
 
  private:
+  /// Pieces spread evenly over the area that faces up.
+  [[nodiscard]] std::vector<const SurfacePatch*> seeds() const {
+    double total_m2 = 0;
+    for (const SurfacePatch* patch : level_) total_m2 += patch->area_m2;
+    std::vector<const SurfacePatch*> chosen;
+    double passed_m2 = 0;
+    for (const SurfacePatch* patch : level_) {
+      passed_m2 += patch->area_m2;
+      if (passed_m2 * kNumSeeds >= total_m2 * static_cast<double>(chosen.size() + 1)) chosen.push_back(patch);
+    }
+    return chosen;
+  }
+
+  /// What a large plane stands on, if that is in view: farther away and seen by few pieces, so that it is no
+  /// plane of its own yet, but level with this one, lower, and large.
+  [[nodiscard]] std::optional<GroundPlane> floor_below(const GroundPlane& plane) const {
+    std::vector<const SurfacePatch*> pieces;
+    for (const SurfacePatch* patch : level_) {
+      if (within(patch->normal, plane.up, kSameNormal_rad)) pieces.push_back(patch);
+    }
+    const auto height = [&](const SurfacePatch* piece) { return -plane.up.dot(piece->centre); };
+    std::sort(pieces.begin(), pieces.end(), [&](auto* a, auto* b) { return height(a) > height(b); });
+    const double least_count =
+        std::max<double>(kLeastPatches, kLeastShare / 2 * static_cast<double>(level_.size()));
+    std::size_t last = 0;
+    double area_m2 = 0;
+    for (std::size_t first = 0; first < pieces.size(); area_m2 -= pieces[first++]->area_m2) {
+      for (; last < pieces.size() && height(pieces[first]) - height(pieces[last]) < kFloorSpread_m; ++last) {
+        area_m2 += pieces[last]->area_m2;
+      }
+      const auto middle = height(pieces[(first + last) / 2]);
+      if (middle < plane.height_m + kFloorSpread_m) return std::nullopt;
+      if (static_cast<double>(last - first) < least_count || area_m2 < kNearlyAsLarge * plane.area_m2)
+        continue;
+      // The plane above it vouches for the tilt.
+      const int vouching = plane.num_patches + static_cast<int>(last - first);
+      return refined({plane.up, middle, plane.tilt_sigma_rad, vouching, area_m2});
+    }
+    return std::nullopt;
+  }
+
+  /// Fits to ever better members while the plane keeps looking the same way; else the plane as it was.
+  [[nodiscard]] GroundPlane refined(const GroundPlane& rough) const {
+    GroundPlane plane = rough;
+    for (const double slab : {4.0, 3.0, 2.0, 2.0}) {
+      const auto fitted = fit(plane, slab * options_.slab_m);
+      if (!fitted || !within(fitted->up, rough.up, kParallel_rad)) return rough;
+      plane = *fitted;
+    }
+    plane.num_patches = rough.num_patches;
+    return plane;
+  }
+
   /// From one piece to the whole plane: the mean of like normals first, then fits to ever better members.
   [[nodiscard]] std::optional<GroundPlane> grow(Eigen::Vector3d up, const Eigen::Vector3d& seed) const {
     for (int i = 0; i < 3; ++i) {
@@ -59,17 +117,20 @@ class GroundSearch {
       }
       up = sum.normalized();
     }
+    const Eigen::Vector3d mean_normal = up;
     GroundPlane plane{.up = up, .height_m = -up.dot(seed)};
     for (const double slab : {3.0, 2.0, 1.0, 1.0}) {
       const auto fitted = fit(plane, slab * options_.slab_m);
       if (!fitted) return std::nullopt;
       plane = *fitted;
     }
-    return plane.height_m >= kLeastHeight_m ? std::optional(plane) : std::nullopt;
+    // Pieces of several surfaces can lie on one plane by chance; then it does not look where they look.
+    const bool true_to_pieces = within(plane.up, mean_normal, kNearlyVertical_rad);
+    return true_to_pieces && plane.height_m >= kLeastHeight_m ? std::optional(plane) : std::nullopt;
   }
 
-  /// One step of least squares for (tilt about two axes, height) on the pieces within the slab, their normals and
-  /// the walls.
+  /// One step of least squares for (tilt about two axes, height) on the pieces within the slab, their normals
+  /// and the walls.
   [[nodiscard]] std::optional<GroundPlane> fit(const GroundPlane& plane, double slab_m) const {
     const Eigen::Vector3d u = plane.up.unitOrthogonal(), v = plane.up.cross(u);
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
@@ -111,8 +172,8 @@ class GroundSearch {
 
 }  // namespace
 
-std::optional<GroundPlane> find_ground(const std::vector<SurfacePatch>& patches, const Eigen::Vector3d& expected_up,
-                                       const GroundOptions& options) {
+std::optional<GroundPlane> find_ground(const std::vector<SurfacePatch>& patches,
+                                       const Eigen::Vector3d& expected_up, const GroundOptions& options) {
   return GroundSearch(patches, expected_up, options).best();
 }
 

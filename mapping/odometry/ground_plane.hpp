@@ -11,7 +11,7 @@ namespace flogmap {
 
 /// A floor: up.p + height_m = 0 for its points p, so the origin stands height_m above it.
 struct GroundPlane {
-  Eigen::Vector3d up;         // unit length
+  Eigen::Vector3d up;  // unit length
   double height_m = 0;
   double tilt_sigma_rad = 0;  // of up, if the pieces' errors were independent
   int num_patches = 0;        // that lie on it ...
@@ -25,8 +25,9 @@ struct GroundOptions {
   bool use_walls = true;           // surfaces at a right angle to the floor are taken to be vertical
 };
 
-/// The plane with many pieces, not too far from `expected_up`, below the origin; of several floors (a table, the
-/// floor) the lowest whose area is not much smaller than the largest's. All in one frame. Nothing if there is none.
+/// The plane with many pieces, not too far from `expected_up`, below the origin; of several floors (a table,
+/// the floor) the lowest whose area is not much smaller than the largest's. All in one frame. Nothing if
+/// there is none.
 [[nodiscard]] std::optional<GroundPlane> find_ground(const std::vector<SurfacePatch>& patches,
                                                      const Eigen::Vector3d& expected_up,
                                                      const GroundOptions& options);

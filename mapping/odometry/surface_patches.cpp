@@ -13,7 +13,7 @@ namespace {
 constexpr int kStepPx = 2;
 constexpr double kLeastShare = 0.8;  // of the samples that must be valid
 constexpr double kGrazing = 8;       // a surface seen flatter than this counts no larger
-constexpr double kFlat_px = 0.3;  // root mean square distance of the samples from the plane
+constexpr double kFlat_px = 0.3;     // root mean square distance of the samples from the plane
 
 /// d = a x + b y + c, x and y from the block's middle.
 struct DisparityPlane {
@@ -66,7 +66,8 @@ std::vector<SurfacePatch> surface_patches(const StereoCamera& camera, const Disp
       const Eigen::Vector3d centre = triangulate(camera, x, y, d);
       const double Z_per_px = side * centre.z() / camera.focal_px;
       const double area = Z_per_px * Z_per_px * std::min(centre.z() / h, kGrazing);
-      patches.push_back({centre, -minus_n_t_h.normalized(), h * std::max(plane->rms_px, kImageSigmaPx) / d, area});
+      patches.push_back(
+          {centre, -minus_n_t_h.normalized(), h * std::max(plane->rms_px, kImageSigmaPx) / d, area});
     }
   }
   return patches;

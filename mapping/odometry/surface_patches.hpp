@@ -20,6 +20,7 @@ struct SurfacePatch {
 /// Fits a plane to every block of up to 32 x 32 px. A plane n.P = -h in space is one in disparity:
 ///   d = -t/h (n_x x + n_y y + n_z f),  x, y without the principal point
 /// Blocks with holes, edges or curved surfaces give none.
-[[nodiscard]] std::vector<SurfacePatch> surface_patches(const StereoCamera& camera, const DisparityImage& disparity);
+[[nodiscard]] std::vector<SurfacePatch> surface_patches(const StereoCamera& camera,
+                                                        const DisparityImage& disparity);
 
 }  // namespace flogmap

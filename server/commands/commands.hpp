@@ -1,4 +1,5 @@
-// One function per subcommand: tells the command line what it takes, and returns what to do once it is parsed.
+// One function per subcommand: tells the command line what it takes, and returns what to do once it is
+// parsed.
 #pragma once
 
 #include <functional>

@@ -63,7 +63,8 @@ void write_pfm(const std::string& file, const Image<float>& disparity) {
       const float d = disparity.at(x, y);
       row[static_cast<std::size_t>(x)] = std::isnan(d) ? std::numeric_limits<float>::infinity() : d;
     }
-    out.write(reinterpret_cast<const char*>(row.data()), static_cast<std::streamsize>(row.size() * sizeof(float)));
+    out.write(reinterpret_cast<const char*>(row.data()),
+              static_cast<std::streamsize>(row.size() * sizeof(float)));
   }
   out.close();
   if (!out) throw UsageError("--out " + file + ": cannot be written");
@@ -94,7 +95,8 @@ double density_percent(const Image<float>& disparity) {
 
 int compute(DisparityArguments arguments) {
   if (arguments.out.empty()) throw UsageError("--out is missing; for instance --out D.pfm");
-  StereoFrame frame{.timestamp_ns = 0, .left = read_input(arguments.left), .right = read_input(arguments.right)};
+  StereoFrame frame{
+      .timestamp_ns = 0, .left = read_input(arguments.left), .right = read_input(arguments.right)};
   if (frame.left.width != frame.right.width || frame.left.height != frame.right.height) {
     throw UsageError(arguments.right + ": is " + std::to_string(frame.right.width) + "x" +
                      std::to_string(frame.right.height) + ", but " + arguments.left + " is " +
@@ -102,13 +104,15 @@ int compute(DisparityArguments arguments) {
   }
   const Rectifier rectifier(calibration_for(arguments, frame.left));
   const bool know_nearest = !arguments.calibration.empty();
-  if (arguments.stereo.num_disparities == 0 && !know_nearest) arguments.stereo.num_disparities = kDefaultDisparities;
+  if (arguments.stereo.num_disparities == 0 && !know_nearest)
+    arguments.stereo.num_disparities = kDefaultDisparities;
   const RectifiedFrame rectified = rectifier.rectify(frame);
   const auto matcher = make_matcher(arguments.stereo, rectifier.camera());
   const auto start = std::chrono::steady_clock::now();
   DisparityImage disparity = matcher->match(rectified);
   remove_small_segments(disparity, min_segment_px(arguments.stereo, rectifier.camera()));
-  const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const double ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   write_pfm(arguments.out, disparity.px);
   const std::string png = beside(arguments.out);
   write_picture_of(disparity, png);
@@ -128,8 +132,10 @@ RunCommand add_disparity(CLI::App& app) {
   DisparityArguments& arguments = state->arguments;
   app.add_option("left", arguments.left, "left picture")->required()->type_name("LEFT");
   app.add_option("right", arguments.right, "right picture")->required()->type_name("RIGHT");
-  state->table.text("out", "D.pfm", arguments.out, "PFM, float disparities, +inf where there is none; also a PNG");
-  state->table.text("calibration", "FILE", arguments.calibration, "rectify first; otherwise the pair is rectified");
+  state->table.text("out", "D.pfm", arguments.out,
+                    "PFM, float disparities, +inf where there is none; also a PNG");
+  state->table.text("calibration", "FILE", arguments.calibration,
+                    "rectify first; otherwise the pair is rectified");
   add_stereo_options(state->table, arguments.stereo);
   state->table.attach(app);
   app.footer("Example: flogmap disparity left.png right.png --out D.pfm --num-disparities 128");

@@ -36,10 +36,10 @@ TrajectoryError compare(const Trajectory& estimate, const Trajectory& truth) {
 }
 
 void print_table(const TrajectoryError& error, std::size_t num_estimated) {
-  std::printf("poses    %d of %zu found a partner; the true path is %.3f m long\n", error.num_poses, num_estimated,
-              error.path_length_m);
-  std::printf("ATE      rmse %.5f m, max %.5f m   (after the best SE(3) alignment, no scale)\n", error.ate_rmse_m,
-              error.ate_max_m);
+  std::printf("poses    %d of %zu found a partner; the true path is %.3f m long\n", error.num_poses,
+              num_estimated, error.path_length_m);
+  std::printf("ATE      rmse %.5f m, max %.5f m   (after the best SE(3) alignment, no scale)\n",
+              error.ate_rmse_m, error.ate_max_m);
   std::printf("RPE      rmse %.5f m, %.4f deg   (from one pose to the next)\n", error.rpe_rmse_m,
               error.rpe_rmse_deg);
   std::printf("drift    %.3f %%, %.4f deg/m\n", error.drift_percent, error.drift_deg_per_m);

@@ -58,9 +58,10 @@ int export_stored(const ExportArguments& arguments) {
 RunCommand add_export(CLI::App& app) {
   auto arguments = std::make_shared<ExportArguments>();
   app.add_option("--store", arguments->store, "the stored map")->type_name("FILE");
-  app.add_option("--format", arguments->format,
-                 "ros: folder of PGM and YAML; png: picture and world file; ply, pcd: points with their evidence; "
-                 "bt: OctoMap; tum, kitti: the path")
+  app.add_option(
+         "--format", arguments->format,
+         "ros: folder of PGM and YAML; png: picture and world file; ply, pcd: points with their evidence; "
+         "bt: OctoMap; tum, kitti: the path")
       ->type_name("ros|png|ply|pcd|bt|tum|kitti");
   app.add_option("--out", arguments->out, "file, or folder for ros")->type_name("PATH");
   app.add_option("--layer", arguments->layer, "png: this layer alone instead of all fused")->type_name("K");

@@ -5,8 +5,9 @@
 
 namespace flogmap {
 
-/// While it lives, SIGINT and SIGTERM call `on_interrupt` in a thread of its own instead of ending the process;
-/// once, so that a second Ctrl-C ends it for good. Make it before other threads: they inherit the blocked signals.
+/// While it lives, SIGINT and SIGTERM call `on_interrupt` in a thread of its own instead of ending the
+/// process; once, so that a second Ctrl-C ends it for good. Make it before other threads: they inherit the
+/// blocked signals.
 class InterruptWatcher {
  public:
   explicit InterruptWatcher(std::function<void()> on_interrupt);

@@ -14,9 +14,12 @@ using nlohmann::json;
 SE3 frame_from_rectified(PosesFrame frame, const StereoCalibration& calibration, const Rectifier& rectifier) {
   const SE3 raw_from_rectified = rectifier.rectified_from_raw_left().inverse();
   switch (frame) {
-    case PosesFrame::rectified: return SE3::Identity();
-    case PosesFrame::raw: return raw_from_rectified;
-    case PosesFrame::body: return calibration.body_from_left * raw_from_rectified;
+    case PosesFrame::rectified:
+      return SE3::Identity();
+    case PosesFrame::raw:
+      return raw_from_rectified;
+    case PosesFrame::body:
+      return calibration.body_from_left * raw_from_rectified;
   }
   return SE3::Identity();
 }
@@ -25,12 +28,14 @@ std::optional<GivenPoses> read_poses(const Options& options, const SE3& frame_fr
   if (options.poses_file.empty()) return std::nullopt;
   std::map<std::int64_t, SE3> poses;
   const Trajectory trajectory = read_trajectory(options.poses_file);
-  if (!trajectory.timed) throw UsageError(options.poses_file + ": poses need times; allowed: TUM or EuRoC csv");
+  if (!trajectory.timed)
+    throw UsageError(options.poses_file + ": poses need times; allowed: TUM or EuRoC csv");
   for (const TimedPose& timed : trajectory.poses) poses.emplace(timed.timestamp_ns, timed.world_from_camera);
   return GivenPoses(poses, frame_from_camera);
 }
 
-FrontEnd make_front_end(const Options& options, const StereoSource& source, const StereoCalibration& calibration) {
+FrontEnd make_front_end(const Options& options, const StereoSource& source,
+                        const StereoCalibration& calibration) {
   Rectifier rectifier(calibration);
   const SE3 frame_from_camera = frame_from_rectified(options.poses_frame, calibration, rectifier);
   FrontEndOptions front_end = options.front_end;
@@ -59,10 +64,14 @@ MappingSession open_unchecked(const Options& options) {
 
 const char* distortion_name(Distortion distortion) {
   switch (distortion) {
-    case Distortion::none: return "none";
-    case Distortion::radtan: return "radtan";
-    case Distortion::rational: return "rational";
-    case Distortion::equidistant: return "equidistant";
+    case Distortion::none:
+      return "none";
+    case Distortion::radtan:
+      return "radtan";
+    case Distortion::rational:
+      return "rational";
+    case Distortion::equidistant:
+      return "equidistant";
   }
   return "none";
 }
@@ -93,7 +102,8 @@ MappingSession open_session(const Options& options) {
 std::string calibration_json(const StereoCalibration& calibration, const StereoCamera& rectified) {
   json right_from_left = json::array();
   for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) right_from_left.push_back(calibration.right_from_left(row, column));
+    for (int column = 0; column < 4; ++column)
+      right_from_left.push_back(calibration.right_from_left(row, column));
   }
   const json document = {{"dialect", calibration.dialect},
                          {"left", camera_json(calibration.left)},

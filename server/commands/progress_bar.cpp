@@ -13,7 +13,9 @@ constexpr std::chrono::milliseconds kRedrawEvery{100};
 }  // namespace
 
 ProgressBar::ProgressBar(std::string job, std::int64_t total)
-    : job_(std::move(job)), total_(std::max<std::int64_t>(total, 1)), on_terminal_(isatty(STDERR_FILENO) == 1) {}
+    : job_(std::move(job)),
+      total_(std::max<std::int64_t>(total, 1)),
+      on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void ProgressBar::show(std::int64_t done, const std::string& note) {
   done_ = done;

@@ -6,8 +6,8 @@
 
 namespace flogmap {
 
-/// One line that shows how far a long job is: bar, count, rate, time left. Draws on a terminal only; elsewhere
-/// it is silent, so that logs stay readable.
+/// One line that shows how far a long job is: bar, count, rate, time left. Draws on a terminal only;
+/// elsewhere it is silent, so that logs stay readable.
 class ProgressBar {
  public:
   ProgressBar(std::string job, std::int64_t total);

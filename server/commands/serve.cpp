@@ -38,8 +38,8 @@ class ServeObserver final : public PipelineObserver {
   void path_grew(const std::vector<TrajectoryEntry>& entries) override {
     path_.insert(path_.end(), entries.begin(), entries.end());
     if (store_ != nullptr) store_->append_trajectory(entries);
-    // The hub appends the poses of tracking reports itself. Only frames of the first seconds get theirs later,
-    // all at once, when it is decided which way is up.
+    // The hub appends the poses of tracking reports itself. Only frames of the first seconds get theirs
+    // later, all at once, when it is decided which way is up.
     if (entries.size() > 1 || entries.back().timestamp_ns != tracked_ns_) {
       hub_->rewrite_trajectory(path_, "levelled");
     }
@@ -82,7 +82,9 @@ std::string find_web_root() {
 void announce(const Options& options, const Hub& hub, const std::string& what) {
   const std::string& address = options.serve.listen_address;
   const bool any = address == "0.0.0.0" || address == "::";
-  const std::string host = any ? "127.0.0.1" : address.find(':') != std::string::npos ? "[" + address + "]" : address;
+  const std::string host = any                                      ? "127.0.0.1"
+                           : address.find(':') != std::string::npos ? "[" + address + "]"
+                                                                    : address;
   const std::string scheme = options.serve.tls_cert.empty() ? "http" : "https";
   std::printf("%s: open %s://%s:%u in a browser (Ctrl-C ends)\n", what.c_str(), scheme.c_str(), host.c_str(),
               static_cast<unsigned>(hub.port()));
@@ -91,8 +93,13 @@ void announce(const Options& options, const Hub& hub, const std::string& what) {
 }
 
 MapBegin begin_of(const StoredMap& map, const std::string& reason) {
-  return {.epoch = map.epoch, .info = map.info, .camera = map.camera, .reason = reason, .revision = map.revision,
-          .tiles = map.tiles, .trajectory = map.trajectory};
+  return {.epoch = map.epoch,
+          .info = map.info,
+          .camera = map.camera,
+          .reason = reason,
+          .revision = map.revision,
+          .tiles = map.tiles,
+          .trajectory = map.trajectory};
 }
 
 int serve_stored(const Options& options, const HubInfo& info) {
@@ -108,8 +115,8 @@ int serve_stored(const Options& options, const HubInfo& info) {
   return 0;
 }
 
-/// After a kill, viewers may have seen up to a second more than was stored. A revision far above all that they
-/// can know makes them take every tile anew.
+/// After a kill, viewers may have seen up to a second more than was stored. A revision far above all that
+/// they can know makes them take every tile anew.
 void outrank_what_viewers_know(StoredMap& map) {
   constexpr std::uint64_t kFarAbove = 1'000'000;
   map.revision += kFarAbove;

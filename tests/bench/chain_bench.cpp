@@ -1,5 +1,6 @@
-// The whole chain as `flogmap map` runs it, threads included, on frames in memory: frames per second, CPU time and
-// the stages' medians. Prints a table and writes build/bench/chain.json (path in the first argument).
+// The whole chain as `flogmap map` runs it, threads included, on frames in memory: frames per second, CPU
+// time and the stages' medians. Prints a table and writes build/bench/chain.json (path in the first
+// argument).
 #include <sys/resource.h>
 
 #include <chrono>
@@ -37,7 +38,9 @@ struct Run {
 double cpu_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+  };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
@@ -50,7 +53,8 @@ Run run(const std::string& spec, const FrontEndOptions& options, const FlogOptio
   pipeline_options.rate = 0;
   pipeline_options.end_with_source = true;
   Deaf observer;
-  Pipeline pipeline(pipeline_options, std::move(source), std::move(front_end), std::move(integrator), observer);
+  Pipeline pipeline(pipeline_options, std::move(source), std::move(front_end), std::move(integrator),
+                    observer);
   const double cpu_before = cpu_seconds();
   const auto start = std::chrono::steady_clock::now();
   pipeline.start();
@@ -65,18 +69,20 @@ Run run(const std::string& spec, const FrontEndOptions& options, const FlogOptio
 }
 
 void print(const char* name, const Run& result) {
-  std::printf("%-22s %7.1f frames/s %8.1f ms CPU a frame   tracked %llu of %llu, %llu views mapped\n", name, result.fps,
-              result.cpu_ms_per_frame, static_cast<unsigned long long>(result.status.tracked),
+  std::printf("%-22s %7.1f frames/s %8.1f ms CPU a frame   tracked %llu of %llu, %llu views mapped\n", name,
+              result.fps, result.cpu_ms_per_frame, static_cast<unsigned long long>(result.status.tracked),
               static_cast<unsigned long long>(result.status.frames),
               static_cast<unsigned long long>(result.status.mapped_views));
   for (const StageReport& stage : result.status.stages) {
-    std::printf("    %-10s median %6.2f ms   p95 %6.2f ms\n", stage.stage.c_str(), stage.median_ms, stage.p95_ms);
+    std::printf("    %-10s median %6.2f ms   p95 %6.2f ms\n", stage.stage.c_str(), stage.median_ms,
+                stage.p95_ms);
   }
 }
 
 int bench(const std::filesystem::path& json_file) {
   const char* data = std::getenv("FLOGMAP_DATA");
-  const std::string large = data != nullptr ? "euroc:" + std::string(data) + "/euroc_mh01_10hz" : "sim:room-752x480";
+  const std::string large =
+      data != nullptr ? "euroc:" + std::string(data) + "/euroc_mh01_10hz" : "sim:room-752x480";
   const Run wide = run(large, {}, {});
   print("752x480", wide);
   // As in the paper: 320x240, 32 disparities, every second row.

@@ -53,7 +53,8 @@ TEST(CaptureControl, EveryIllegalTransitionIsRefusedWithAReason) {
 TEST(CaptureControl, ALiveSourceIsNeitherReplayedNorStepped) {
   CaptureControl control = running(camera());
   control.started();
-  EXPECT_EQ(control.change_playback({.position_s = 1, .rate = {}, .paused = {}}).outcome, ControlOutcome::illegal);
+  EXPECT_EQ(control.change_playback({.position_s = 1, .rate = {}, .paused = {}}).outcome,
+            ControlOutcome::illegal);
   EXPECT_EQ(control.step().outcome, ControlOutcome::illegal);
   EXPECT_EQ(control.pause().outcome, ControlOutcome::done);
   EXPECT_FALSE(control.playback().seekable);
@@ -73,7 +74,8 @@ TEST(CaptureControl, ASeekComesFirstAndShowsOneFrameWhilePaused) {
   CaptureControl control = running(recording());
   control.started();
   ASSERT_EQ(control.pause().outcome, ControlOutcome::done);
-  ASSERT_EQ(control.change_playback({.position_s = 2.5, .rate = {}, .paused = {}}).outcome, ControlOutcome::done);
+  ASSERT_EQ(control.change_playback({.position_s = 2.5, .rate = {}, .paused = {}}).outcome,
+            ControlOutcome::done);
   const CaptureTurn turn = control.await_turn();
   EXPECT_EQ(turn.kind, CaptureTurn::Kind::seek);
   EXPECT_DOUBLE_EQ(turn.position_s, 2.5);

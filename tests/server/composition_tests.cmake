@@ -3,3 +3,7 @@ flogmap_test(composition_tests
   SOURCES bounded_queue_test.cpp capture_control_test.cpp option_table_test.cpp stage_statistics_test.cpp
           pipeline_test.cpp
   LINK pipeline options CLI11::CLI11)
+
+flogmap_bench(chain_bench
+  SOURCES ${PROJECT_SOURCE_DIR}/tests/bench/chain_bench.cpp
+  LINK pipeline nlohmann_json::nlohmann_json)

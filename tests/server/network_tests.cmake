@@ -12,6 +12,15 @@ flogmap_test(wire_tests SOURCES wire_golden_test.cpp LINK wire_samples board pro
 flogmap_target(tile_mirror SOURCES tile_mirror.cpp PUBLIC board PRIVATE proto)
 flogmap_test(outbox_tests SOURCES outbox_law_test.cpp LINK tile_mirror board proto)
 
-flogmap_target(loopback_hub SOURCES loopback_hub.cpp client_frames.cpp PUBLIC hub PRIVATE network_libraries proto)
+flogmap_target(loopback_hub SOURCES loopback_hub.cpp PUBLIC hub PRIVATE network_libraries)
 flogmap_test(hub_tests SOURCES hub_http_test.cpp hub_stream_test.cpp
-             LINK loopback_hub synthetic_walk tile_mirror hub proto nlohmann_json::nlohmann_json)
+             LINK loopback_hub client_frames synthetic_walk tile_mirror hub proto nlohmann_json::nlohmann_json)
+
+flogmap_target(client_frames SOURCES client_frames.cpp PUBLIC wire PRIVATE proto)
+flogmap_test(board_tests SOURCES tile_board_test.cpp LINK board api)
+flogmap_test(stream_tests SOURCES stream_protocol_test.cpp access_test.cpp
+             LINK client_frames synthetic_walk tile_mirror hub api)
+
+flogmap_bench(serve_bench
+  SOURCES ${PROJECT_SOURCE_DIR}/tests/bench/serve_bench.cpp ${PROJECT_SOURCE_DIR}/tests/bench/serve_load.cpp
+  LINK loopback_hub client_frames synthetic_walk hub network_libraries proto nlohmann_json::nlohmann_json)

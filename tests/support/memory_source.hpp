@@ -52,12 +52,15 @@ class MemorySource final : public StereoSource {
     info.last_timestamp_ns = recorded_->frames.back().timestamp_ns;
     return info;
   }
-  [[nodiscard]] std::optional<StereoCalibration> calibration() const override { return recorded_->calibration; }
+  [[nodiscard]] std::optional<StereoCalibration> calibration() const override {
+    return recorded_->calibration;
+  }
   bool seek(std::int64_t timestamp_ns) override {
     const std::vector<StereoFrame>& frames = recorded_->frames;
     for (next_ = 0; next_ < frames.size() && frames[next_].timestamp_ns < timestamp_ns;) ++next_;
     return true;
   }
+
  private:
   std::shared_ptr<const RecordedFrames> recorded_;
   std::size_t next_ = 0;

@@ -1,0 +1,178 @@
+// Deadlines and orders of the stream, with the time told.
+#include "server/stream_protocol.hpp"
+
+#include <gtest/gtest.h>
+
+#include "server/mailbox.hpp"
+#include "tests/server/client_frames.hpp"
+#include "tests/server/fake_session.hpp"
+#include "tests/server/synthetic_walk.hpp"
+#include "tests/server/tile_mirror.hpp"
+
+namespace flogmap {
+namespace {
+
+using namespace std::chrono_literals;
+
+class ProtocolTest : public ::testing::Test {
+ protected:
+  ProtocolTest() : state_({}, session_, {}) {
+    state_.live = std::make_unique<ServedMap>("live", walk_.begin("0000000000000001", "started"), Operators::algebraic);
+    for (int i = 0; i < 60; ++i) {
+      const auto tiles = walk_.step();
+      state_.live->update(walk_.revision(), tiles);
+    }
+  }
+
+  int code(const std::optional<StreamClose>& close) { return close ? close->code : 0; }
+  Bytes next(StreamProtocol& protocol, StreamProtocol::Time now) { return protocol.outbox().next(*state_.live, now); }
+
+  const StreamProtocol::Time start_{1h};
+  FakeSession session_;
+  SyntheticWalk walk_;
+  ServerState state_;
+};
+
+TEST_F(ProtocolTest, HelloIsDueInFiveSeconds) {
+  StreamProtocol silent(state_, Role::view, start_), polite(state_, Role::view, start_);
+  polite.receive(hello_frame(), start_ + 4s);
+  EXPECT_EQ(code(silent.check_deadlines(start_ + 4s)), 0);
+  EXPECT_EQ(code(silent.check_deadlines(start_ + 5s)), 4000);
+  EXPECT_EQ(code(polite.check_deadlines(start_ + 5s)), 0);
+}
+
+TEST_F(ProtocolTest, WithoutAnAckForThirtySecondsItIsClosed) {
+  StreamProtocol protocol(state_, Role::view, start_);
+  protocol.receive(hello_frame(), start_);
+  protocol.receive(subscribe_frame({{{}, Planes::evidence}, {}, 0, false}), start_);
+  while (next(protocol, start_)) {
+  }
+  ASSERT_GT(protocol.outbox().unacknowledged(), 0U);
+  protocol.receive(ping_frame(1), start_ + 29s);  // alive, but acknowledges nothing
+  EXPECT_EQ(code(protocol.check_deadlines(start_ + 29s)), 0);
+  EXPECT_EQ(code(protocol.check_deadlines(start_ + 30s)), 4008);
+  protocol.receive(ack_frame(protocol.outbox().unacknowledged()), start_ + 29s);
+  EXPECT_EQ(code(protocol.check_deadlines(start_ + 60s)), 0);
+}
+
+TEST_F(ProtocolTest, PingsEveryFifteenSecondsAndDeadAfterFortyFive) {
+  StreamProtocol protocol(state_, Role::view, start_);
+  protocol.receive(hello_frame(), start_);
+  EXPECT_FALSE(protocol.ping_due(start_ + 14s));
+  EXPECT_TRUE(protocol.ping_due(start_ + 15s));
+  EXPECT_FALSE(protocol.ping_due(start_ + 29s));
+  EXPECT_TRUE(protocol.ping_due(start_ + 30s));
+  EXPECT_EQ(code(protocol.check_deadlines(start_ + 44s)), 0);
+  EXPECT_EQ(code(protocol.check_deadlines(start_ + 45s)), 4008);
+  protocol.heard(start_ + 30s);
+  EXPECT_EQ(code(protocol.check_deadlines(start_ + 45s)), 0);
+}
+
+TEST_F(ProtocolTest, OneWhoAsksButDoesNotReadIsClosed) {
+  StreamProtocol protocol(state_, Role::view, start_);
+  protocol.receive(hello_frame(), start_);
+  int closed = 0, asked = 0;
+  for (; asked < 1000 && closed == 0; ++asked) closed = code(protocol.receive(ping_frame(1), start_));
+  EXPECT_EQ(closed, 4008);
+  EXPECT_LE(asked, static_cast<int>(Outbox::kMaxControls));
+}
+
+TEST_F(ProtocolTest, APoseNeverWaitsBehindMoreThanOneBatch) {
+  StreamProtocol protocol(state_, Role::view, start_);
+  protocol.receive(hello_frame(), start_);
+  protocol.receive(subscribe_frame({{{}, Planes::evidence}, {}, 20, false}), start_);
+  TileMirror mirror;
+  while (const Bytes message = next(protocol, start_)) {
+    if (mirror.take(*message) == TileMirror::Effect::tiles) break;  // in the middle of the snapshot
+  }
+  const Bytes pose = to_shared(encode_pose(walk_.tracking(), 0));
+  protocol.outbox().image(ImageStream::left, to_shared("a picture"));
+  protocol.outbox().pose(pose);
+  EXPECT_EQ(next(protocol, start_ + 1ms), pose);
+}
+
+TEST_F(ProtocolTest, ChangesComeAtNoMoreThanTenHertz) {
+  StreamProtocol protocol(state_, Role::view, start_);
+  protocol.receive(hello_frame(), start_);
+  protocol.receive(subscribe_frame({{{}, Planes::value}, {}, 0, false}), start_);
+  TileMirror mirror;
+  int num_batches = 0;
+  const auto drain = [&](StreamProtocol::Time now) {
+    while (const Bytes message = next(protocol, now)) {
+      num_batches += mirror.take(*message) == TileMirror::Effect::tiles ? 1 : 0;
+      protocol.receive(ack_frame(mirror.batch_bytes()), now);
+    }
+  };
+  drain(start_);
+  num_batches = 0;
+  for (int ms = 0; ms < 2000; ms += 10) {
+    auto tiles = walk_.step();
+    if (!tiles.empty()) protocol.outbox().changed(state_.live->update(walk_.revision(), tiles));
+    drain(start_ + std::chrono::milliseconds(ms));
+  }
+  EXPECT_LE(num_batches, 20);
+  EXPECT_GE(num_batches, 15);
+}
+
+TEST_F(ProtocolTest, VisibleTilesComeFirst) {
+  StreamProtocol protocol(state_, Role::view, start_);
+  protocol.receive(hello_frame(), start_);
+  const TileBoard& board = state_.live->board();
+  const Bounds view = tile_bounds(board.info().grid, {0, 2, 1});
+  Outbox outbox(WireLimits{1U << 20U, 1, 65536});  // one tile a batch
+  outbox.look_at({view, 0}, *state_.live);
+  outbox.subscribe({{{}, Planes::value}, {}, 0, false}, *state_.live);
+  TileMirror mirror;
+  while (mirror.tiles().empty()) mirror.take(*outbox.next(*state_.live, start_));
+  EXPECT_TRUE(intersect(tile_bounds(board.info().grid, mirror.tiles().begin()->first), view));
+  EXPECT_EQ(mirror.tiles().begin()->first.level, 0U);
+}
+
+TEST(Mailbox, KeepsTheNewestOfEachTileAndWakesOnce) {
+  Mailbox mailbox;
+  const auto tile = std::make_shared<const Tile>();
+  EXPECT_TRUE(mailbox.publish(3, {{{0, 0}, 3, tile}, {{1, 0}, 3, tile}}));
+  EXPECT_FALSE(mailbox.publish(4, {{{0, 0}, 4, tile}}));
+  EXPECT_FALSE(mailbox.publish(2, {{{1, 0}, 2, nullptr}}));  // late: ignored
+  const Mailbox::Contents contents = mailbox.take();
+  EXPECT_EQ(contents.revision, 4U);
+  ASSERT_EQ(contents.tiles.size(), 2U);
+  EXPECT_EQ(contents.tiles.at({0, 0}).revision, 4U);
+  EXPECT_EQ(contents.tiles.at({1, 0}).revision, 3U);
+  EXPECT_TRUE(mailbox.take().tiles.empty());
+  EXPECT_TRUE(mailbox.publish(5, {}));
+}
+
+TEST(Mailbox, ANewMapDiscardsWhatWasSaidOfTheOld) {
+  Mailbox mailbox;
+  SyntheticWalk walk;
+  walk.step();
+  mailbox.publish(9, {{{0, 0}, 9, std::make_shared<const Tile>()}});
+  mailbox.publish_tracking(walk.tracking());
+  mailbox.begin(walk.begin("2", "reset"));
+  mailbox.publish_tracking(walk.tracking());
+  const Mailbox::Contents contents = mailbox.take();
+  EXPECT_TRUE(contents.begin);
+  EXPECT_TRUE(contents.tiles.empty());
+  EXPECT_EQ(contents.appended.size(), 1U);
+}
+
+TEST(Mailbox, ARewrittenPathKeepsWhatCameAfterIt) {
+  Mailbox mailbox;
+  SyntheticWalk walk;
+  std::vector<TrajectoryEntry> path;
+  for (int i = 0; i < 4; ++i) {
+    walk.step();
+    const TrackingReport report = walk.tracking();
+    mailbox.publish_tracking(report);
+    if (i < 3) path.push_back({report.timestamp_ns, *report.world_from_camera, TrackingState::ok, false});
+  }
+  mailbox.rewrite_trajectory(path, "loop closed");
+  const Mailbox::Contents contents = mailbox.take();
+  EXPECT_EQ(contents.rewrite.value().trajectory.size(), 3U);
+  ASSERT_EQ(contents.appended.size(), 1U);
+  EXPECT_GT(contents.appended[0].timestamp_ns, path.back().timestamp_ns);
+}
+
+}  // namespace
+}  // namespace flogmap
