@@ -11,13 +11,22 @@ let program: Program;
 test.beforeAll(async () => { program = await Program.start('sim:room'); });
 test.afterAll(async () => { await program.end(); });
 
+/** Stops the camera and waits until the views under way are mapped and shown. */
 async function pause(page: Page): Promise<void> {
   const { state: now } = await program.json<{ state: string }>('session');
   if (now === 'running') await program.post('session:pause');
-  await page.waitForTimeout(1000);
-  await quiet(page, (await program.json<{ rev: number }>('maps/live')).rev);
+  const rev = async (): Promise<number> => (await program.json<{ rev: number }>('maps/live')).rev;
+  for (let before = -1, still = 0; still < 3; await page.waitForTimeout(1000)) {
+    const here = await rev();
+    still = here === before ? still + 1 : 0;
+    before = here;
+  }
+  await quiet(page, await rev());
 }
-const resume = (): Promise<unknown> => program.post('session:resume');
+
+test.afterEach(async () => { // also after a failure, or the next test would wait for ever
+  if ((await program.json<{ state: string }>('session')).state === 'paused') await program.post('session:resume');
+});
 
 test('the room appears and grows while the camera walks', async ({ page }) => {
   const errors: string[] = [];
@@ -50,7 +59,6 @@ test('the page holds the server’s tiles, byte for byte', async ({ page }) => {
       }
     }
   }
-  await resume();
 });
 
 /** Cells around the middle of the held map with their fused value of a style, none at a tile's edge. */
@@ -99,7 +107,6 @@ test('every pixel has the colour that rules and palette give to its cell', async
     expect(checked, style).toBeGreaterThan(30);
     expect(wrong / checked, `${style}: ${wrong} of ${checked} pixels`).toBeLessThan(0.12);
   }
-  await resume();
 });
 
 test('a click shows the evidence of the column as the server has it', async ({ page }) => {
@@ -114,7 +121,6 @@ test('a click shows the evidence of the column as the server has it', async ({ p
   await expect(page.locator('.cell-layer .rays').first()).toHaveText(/N \d+/);
   const served = await program.json<{ layers: { layer: number; E: number; N: number }[] }>(`maps/live/cell?x=${x}&y=${y}`);
   for (const { layer } of served.layers) await expect(page.locator(`.cell-layer[data-layer="${layer}"] .bar`)).toHaveCount(3);
-  await resume();
 });
 
 test('a reload in the middle gives the whole map again', async ({ page }) => {
@@ -127,7 +133,6 @@ test('a reload in the middle gives the whole map again', async ({ page }) => {
   const after = { ...(await state(page)), keys: (await keys(page)).sort() };
   expect(after.keys).toEqual(before.keys);
   expect(after.trajectoryLength).toBe(before.trajectoryLength);
-  await resume();
 });
 
 test('two pages see the same map', async ({ page, context }) => {
@@ -139,5 +144,4 @@ test('two pages see the same map', async ({ page, context }) => {
   expect((await keys(other)).sort()).toEqual((await keys(page)).sort());
   expect(await state(other)).toMatchObject({ epoch: (await state(page)).epoch, rev: (await state(page)).rev });
   await other.close();
-  await resume();
 });

@@ -6,11 +6,11 @@ export default defineConfig({
   outputDir: '../../web/test-results',
   workers: 1, // every test starts a mapping program of its own: two at a time would only slow each other down
   fullyParallel: false,
-  timeout: 120_000,
-  expect: { timeout: 30_000 },
+  timeout: 240_000,
+  expect: { timeout: 60_000 },
   reporter: 'list',
   use: {
-    viewport: { width: 1280, height: 800 },
+    viewport: { width: 1000, height: 640 },
     colorScheme: 'dark',
     launchOptions: {
       executablePath: process.env['FLOGMAP_CHROMIUM'] ?? '/usr/bin/chromium',

@@ -4,7 +4,7 @@ import { pinCell, asJson } from './panels/inspector';
 import { toggleSolo } from './panels/layers';
 import { togglePause } from './panels/header';
 import { showHelp } from './panels/help';
-import { nextFollow, showAll, toggleTool } from './panels/toolbar';
+import { nextFollow, showAll, toggleHold, toggleTool } from './panels/toolbar';
 import type { Page } from './page';
 import { STYLES } from './rules';
 import { layerSetting, withLayer } from './settings';
@@ -60,6 +60,7 @@ function chooses(page: Page, actions: KeyActions, key: string): boolean {
     case 'v': settings.set({ solid: !now.solid }); return true;
     case 's': settings.set({ style: STYLES[(STYLES.indexOf(now.style) + 1) % STYLES.length] ?? 'visual' }); return true;
     case 'g': settings.set({ showGrid: !now.showGrid }); return true;
+    case 'h': toggleHold(page); return true;
     case 'm': toggleTool(page, 'measure'); return true;
     case 'r': toggleTool(page, 'route'); return true;
     case 'p': pinCell(page); return true;

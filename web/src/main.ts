@@ -25,7 +25,7 @@ const query = new URLSearchParams(location.search);
 const linked = readHash(location.hash);
 const settings = keptSettings(query.has('fresh') ? null : localStorage);
 settings.set(linked.settings);
-const focus = new Store<Focus>({ tool: 'inspect', hover: undefined, cell: linked.cell, pins: [], sheet: 'none', theme: 'dark' });
+const focus = new Store<Focus>({ tool: 'inspect', hover: undefined, cell: linked.cell, pins: [], sheet: 'none', theme: 'dark', heldSince: 0 });
 const phone = matchMedia('(max-width: 760px)').matches;
 const budget = Number(query.get('budget') ?? (phone ? 96 : 256)) * 2 ** 20; // bytes of tiles held
 const live = new LiveMap(new TileStore(budget));
@@ -98,6 +98,8 @@ view.moved.on(() => {
     connection.lookAt({ bounds: { xMin, yMin, xMax, yMax }, level: levelFor(view.viewport, live.info?.cellSize ?? 1, live.info?.levels ?? 1) });
   }, LOOK_EVERY_MS);
 });
+
+focus.watch(['heldSince'], ({ heldSince }) => view.hold(heldSince > 0));
 
 live.tilesChanged.on(() => {
   const evicted = live.tiles.evict(new Set(view.shown.map(keyText)));

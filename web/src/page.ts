@@ -20,6 +20,8 @@ export interface Focus {
   readonly pins: readonly Point[];
   readonly sheet: Sheet; // on narrow screens
   readonly theme: Theme;
+  /** Time of day from which on the picture stands still, though the map goes on; 0 = it does not. */
+  readonly heldSince: number;
 }
 
 export interface Page {

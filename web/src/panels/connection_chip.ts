@@ -28,13 +28,15 @@ export function connectionChip(page: Page): HTMLElement {
   const text = h('span', {});
   const chip = h('div', { class: 'chip', role: 'status', 'aria-live': 'polite' }, h('span', { class: 'chip-dot', 'aria-hidden': 'true' }), text);
   const show = (state: ConnectionState): void => {
-    const { text: words, tone } = describe(state);
+    const { heldSince } = page.focus.get();
+    const held = heldSince > 0 && (state.phase === 'live' || state.phase === 'lagging');
+    const { text: words, tone } = held ? { text: `Held at ${timeOfDay(heldSince)}`, tone: 'held' as const } : describe(state);
     setText(text, words);
     chip.dataset['tone'] = tone;
     chip.title = state.phase === 'live' ? `Round trip ${Math.round(state.lagMs)} ms, revision ${page.live.rev}` : words;
   };
   page.connection.stateChanged.on(show);
-  show(page.connection.state);
+  page.focus.watch(['heldSince'], () => show(page.connection.state));
   return chip;
 }
 

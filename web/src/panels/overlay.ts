@@ -4,6 +4,7 @@ import { areaOf, lengthOf } from '../geometry';
 import { attempt, type Page } from '../page';
 import type { Route } from '../backend';
 import { append, h, setText, svg } from '../ui/dom';
+import { slider } from '../ui/controls';
 import type { Point } from '../viewport';
 
 export interface Overlay {
@@ -22,14 +23,20 @@ interface Work {
 
 export function overlay(page: Page): Overlay {
   const drawing = svg('svg', { class: 'overlay-lines', 'aria-hidden': 'true' });
-  const card = h('div', { class: 'tool-card', hidden: true, role: 'status' });
+  const words = h('span', { role: 'status' });
+  const radius = slider('Robot radius', { min: 0.05, max: 1, step: 0.05 }, (value) => `${value.toFixed(2)} m`, (robotRadius) => page.settings.set({ robotRadius }));
+  page.settings.watch(['robotRadius'], (now) => radius.show(now.robotRadius));
+  const card = h('div', { class: 'tool-card', hidden: true }, words, radius.element);
   const work: Work = { measured: [], from: undefined, route: undefined };
   const redraw = (): void => {
     drawing.replaceChildren();
     drawCells(page, drawing);
     drawMeasure(page, drawing, work);
     drawRoute(page, drawing, work);
-    showCard(page, card, work);
+    const { tool } = page.focus.get();
+    card.hidden = tool === 'inspect';
+    radius.element.hidden = tool !== 'route';
+    setText(words, tool === 'measure' ? measureWords(work.measured, page.focus.get().hover, page.live.info?.cellSize ?? 0) : routeWords(work));
   };
   page.view.drawn.on(redraw);
   page.focus.changed.on(({ now, before }) => {
@@ -108,13 +115,6 @@ function line(page: Page, drawing: SVGElement, points: readonly Point[], kind: s
 function dot(page: Page, drawing: SVGElement, point: Point, kind: string): void {
   const { x, y } = page.view.project(point.x, point.y);
   drawing.append(svg('circle', { cx: x, cy: y, r: 4, class: kind }));
-}
-
-function showCard(page: Page, card: HTMLElement, work: Work): void {
-  const { tool } = page.focus.get();
-  card.hidden = tool === 'inspect';
-  if (tool === 'measure') setText(card, measureWords(work.measured, page.focus.get().hover, page.live.info?.cellSize ?? 0));
-  else if (tool === 'route') setText(card, routeWords(work));
 }
 
 /** Length of the line, last leg, and area from three points on; each end may be half a cell off. */

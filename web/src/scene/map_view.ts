@@ -19,6 +19,9 @@ import { ViewCamera } from './view_camera';
 
 const FIT_MARGIN_PX = 48;
 const EASE_PER_S = 9; // how fast the view follows
+// A machine that takes longer than this for a frame gets as long a rest after it: the page must stay alive.
+const SLOW_MS = 100;
+const MAX_REST_MS = 500;
 
 export class MapView {
   viewport: Viewport = { x: 0, y: 0, scale: 80, turn: 0, width: 800, height: 600 };
@@ -38,6 +41,8 @@ export class MapView {
   private readonly grid = new GridLines();
   private readonly tiles: TileScene;
   private scheduled = false;
+  private waited = 0; // ms that the last frame had to wait for its turn
+  private held = false;
   private stale = { tiles: true, path: true, settings: true };
   private target: Viewport | null = null;
   private lastFrame = 0;
@@ -73,7 +78,20 @@ export class MapView {
   requestDraw(): void {
     if (this.scheduled) return;
     this.scheduled = true;
-    requestAnimationFrame((now) => this.draw(now));
+    setTimeout(() => {
+      const asked = performance.now();
+      requestAnimationFrame((now) => {
+        this.waited = performance.now() - asked;
+        this.draw(now);
+      });
+    }, this.waited > SLOW_MS ? Math.min(MAX_REST_MS, this.waited) : 0);
+  }
+
+  /** While held, the picture stays as it is though the map goes on; letting go catches up. */
+  hold(held: boolean): void {
+    this.held = held;
+    this.stale.tiles = this.stale.path = true;
+    this.requestDraw();
   }
 
   /** Moves the view by hand: it stays where the person puts it. */
@@ -164,7 +182,7 @@ export class MapView {
   private changeTiles(applied: readonly TileKey[], removed: readonly TileKey[]): void {
     this.tiles.change(applied);
     this.release(removed);
-    const rect = this.touchedByUser || this.settings.get().follow !== 'free' ? undefined : this.mapRect();
+    const rect = this.held || this.touchedByUser || this.settings.get().follow !== 'free' ? undefined : this.mapRect();
     if (rect) this.glideTo(fit(this.viewport, rect, FIT_MARGIN_PX));
     this.mark('tiles');
   }
@@ -182,7 +200,7 @@ export class MapView {
   private follow(): void {
     const { follow } = this.settings.get();
     const pose = this.live.pose?.pose;
-    if (follow === 'free' || !pose) return;
+    if (follow === 'free' || !pose || this.held) return;
     const turn = follow === 'heading' ? wrapAngle(heading(pose) - Math.PI / 2) : 0;
     this.glideTo({ ...this.viewport, scale: this.target?.scale ?? this.viewport.scale, x: pose.x, y: pose.y, turn });
   }
@@ -211,7 +229,7 @@ export class MapView {
     if (seconds > 0) this.fps = this.fps * 0.9 + 0.1 / Math.max(seconds, 1e-3);
     this.lastFrame = now;
     this.glide(seconds);
-    this.tiles.upload();
+    if (!this.held) this.tiles.upload();
     this.refresh();
     this.eye.solid = this.settings.get().solid;
     this.eye.update(this.viewport);
@@ -238,11 +256,11 @@ export class MapView {
     const { info } = this.live;
     if (this.stale.settings) this.refreshColours(settings);
     if (this.stale.tiles && info) this.tiles.show(this.viewport, info, settings);
-    if (this.stale.path) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
+    if (this.stale.path && !this.held) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
     this.path.setScale(this.viewport.scale);
     this.stale = { tiles: false, path: false, settings: false };
     const pose = this.live.pose;
-    if (pose?.pose) {
+    if (pose?.pose && !this.held) {
       this.marker.setState(pose.state);
       this.marker.place(pose.pose, this.live.camera, this.viewport.scale, settings.solid);
     }
