@@ -1,5 +1,6 @@
 #include "server/access.hpp"
 
+#include <arpa/inet.h>
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
 
@@ -26,7 +27,8 @@ bool same_secret(std::string_view a, std::string_view b) {
 
 std::string random_name() {
   std::array<unsigned char, 24> bytes{};
-  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) throw std::runtime_error("no random bytes");
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
+    throw std::runtime_error("no random bytes");
   std::string name;
   for (const unsigned char byte : bytes) {
     name += "0123456789abcdef"[byte >> 4U];
@@ -52,13 +54,23 @@ std::string_view cookie_value(std::string_view header) {
 
 }  // namespace
 
-bool is_loopback(std::string_view address) { return address == "::1" || address.starts_with("127."); }
+bool is_loopback(std::string_view address) {
+  // Parsed, not compared by its beginning: "127.0.0.1.evil.example" is a name, and could be anybody.
+  in_addr v4{};
+  in6_addr v6{};
+  const std::string text(address);
+  if (inet_pton(AF_INET, text.c_str(), &v4) == 1) return ntohl(v4.s_addr) >> 24U == 127;
+  return inet_pton(AF_INET6, text.c_str(), &v6) == 1 && IN6_IS_ADDR_LOOPBACK(&v6);
+}
 
 std::string_view name_of(Role role) {
   switch (role) {
-    case Role::view: return "view";
-    case Role::control: return "control";
-    case Role::none: break;
+    case Role::view:
+      return "view";
+    case Role::control:
+      return "control";
+    case Role::none:
+      break;
   }
   return "none";
 }

@@ -76,7 +76,8 @@ struct Ping {
 
 using ClientMessage = std::variant<Hello, Subscribe, Viewport, Ack, Forget, InspectCell, Ping>;
 
-/// Nothing if the bytes are not a client message or a value is impossible (not finite, unknown plane or stream).
+/// Nothing if the bytes are not a client message or a value is impossible (not finite, unknown plane or
+/// stream).
 std::optional<ClientMessage> decode_client_message(std::string_view bytes);
 
 }  // namespace flogmap

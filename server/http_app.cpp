@@ -44,10 +44,12 @@ void HttpApp::identify(ApiRequest& request) const {
 
 std::optional<ApiResponse> HttpApp::refuse(const ApiRequest& request) const {
   if (!access_.host_allowed(request.host, request.local_address)) {
-    return problem(403, "host-not-allowed", "this server does not answer to that name; see --allow-host", "Host");
+    return problem(403, "host-not-allowed", "this server does not answer to that name; see --allow-host",
+                   "Host");
   }
   if (!access_.origin_allowed(request.origin, request.host, request.encrypted)) {
-    return problem(403, "origin-not-allowed", "pages from elsewhere may not do this; see --allow-origin", "Origin");
+    return problem(403, "origin-not-allowed", "pages from elsewhere may not do this; see --allow-origin",
+                   "Origin");
   }
   return std::nullopt;
 }
@@ -97,8 +99,8 @@ ApiResponse HttpApp::log_in(const ApiRequest& request) {
     return response;
   }
   const auto now = steady_clock::now();
-  const std::string attributes = std::string("; Path=/; HttpOnly; SameSite=Strict") +
-                                 (request.encrypted ? "; Secure" : "");
+  const std::string attributes =
+      std::string("; Path=/; HttpOnly; SameSite=Strict") + (request.encrypted ? "; Secure" : "");
   const std::string name(Access::kCookie);
   if (request.path == kLogout) {
     access_.log_out(request.cookie);

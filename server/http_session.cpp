@@ -24,7 +24,8 @@ namespace {
 constexpr std::uint32_t kMaxHeaderBytes = 8U << 10U;
 constexpr std::uint64_t kMaxBodyBytes = 64U << 10U;
 constexpr std::size_t kMaxTargetBytes = 2U << 10U;
-constexpr seconds kHeaderDeadline{5}, kBodyDeadline{10}, kWriteDeadline{10}, kIdleDeadline{60}, kLingerDeadline{2};
+constexpr seconds kHeaderDeadline{5}, kBodyDeadline{10}, kWriteDeadline{10}, kIdleDeadline{60},
+    kLingerDeadline{2};
 constexpr int kMaxLingerReads = 64;
 constexpr std::string_view kStreamPath = "/api/v1/stream";
 constexpr std::string_view kStreamProtocol = "flogmap.v1.proto";
@@ -33,12 +34,18 @@ std::string text(boost::string_view view) { return {view.data(), view.size()}; }
 
 Method method_of(http::verb verb) {
   switch (verb) {
-    case http::verb::get: return Method::get;
-    case http::verb::head: return Method::head;
-    case http::verb::post: return Method::post;
-    case http::verb::patch: return Method::patch;
-    case http::verb::options: return Method::options;
-    default: return Method::other;
+    case http::verb::get:
+      return Method::get;
+    case http::verb::head:
+      return Method::head;
+    case http::verb::post:
+      return Method::post;
+    case http::verb::patch:
+      return Method::patch;
+    case http::verb::options:
+      return Method::options;
+    default:
+      return Method::other;
   }
 }
 
@@ -46,15 +53,19 @@ Method method_of(http::verb verb) {
 
 template <typename Stream>
 HttpSession<Stream>::HttpSession(Stream stream, SessionContext context, Peer peer)
-    : stream_(std::move(stream)), context_(context), peer_(std::move(peer)), buffer_(kMaxHeaderBytes + kMaxBodyBytes) {}
+    : stream_(std::move(stream)),
+      context_(context),
+      peer_(std::move(peer)),
+      buffer_(kMaxHeaderBytes + kMaxBodyBytes) {}
 
 template <typename Stream>
 void HttpSession<Stream>::run() {
   if constexpr (std::is_same_v<Stream, TlsStream>) {
     beast::get_lowest_layer(stream_).expires_after(kHeaderDeadline);
-    stream_.async_handshake(net::ssl::stream_base::server, [self = this->shared_from_this()](ErrorCode error) {
-      if (!error) self->read_header();
-    });
+    stream_.async_handshake(net::ssl::stream_base::server,
+                            [self = this->shared_from_this()](ErrorCode error) {
+                              if (!error) self->read_header();
+                            });
   } else {
     read_header();
   }
@@ -80,8 +91,9 @@ void HttpSession<Stream>::read_header() {
   parser_->header_limit(kMaxHeaderBytes);
   parser_->body_limit(kMaxBodyBytes);
   beast::get_lowest_layer(stream_).expires_after(kHeaderDeadline);
-  http::async_read_header(stream_, buffer_, *parser_,
-                          [self = this->shared_from_this()](ErrorCode error, std::size_t) { self->on_header(error); });
+  http::async_read_header(
+      stream_, buffer_, *parser_,
+      [self = this->shared_from_this()](ErrorCode error, std::size_t) { self->on_header(error); });
 }
 
 template <typename Stream>
@@ -92,8 +104,9 @@ void HttpSession<Stream>::on_header(ErrorCode error) {
   }
   if (parser_->is_done()) return handle();
   beast::get_lowest_layer(stream_).expires_after(kBodyDeadline);
-  http::async_read(stream_, buffer_, *parser_,
-                   [self = this->shared_from_this()](ErrorCode read_error, std::size_t) { self->on_body(read_error); });
+  http::async_read(
+      stream_, buffer_, *parser_,
+      [self = this->shared_from_this()](ErrorCode read_error, std::size_t) { self->on_body(read_error); });
 }
 
 template <typename Stream>
@@ -151,7 +164,8 @@ void HttpSession<Stream>::handle() {
   if (!parse_target(target, request)) {
     return respond(request, problem(400, "bad-url", "the URL holds a broken escape"), keep_alive);
   }
-  if (request.host.empty()) return respond(request, problem(400, "host-missing", "send a Host header"), false);
+  if (request.host.empty())
+    return respond(request, problem(400, "host-missing", "send a Host header"), false);
   if (request.path == kStreamPath && request.method == Method::get) return open_stream(request);
   context_.app.answer(request, [self = this->shared_from_this(), request, keep_alive](ApiResponse response) {
     self->respond(request, std::move(response), keep_alive);
@@ -183,11 +197,13 @@ void HttpSession<Stream>::respond(const ApiRequest& request, ApiResponse respons
   head_ = response_head(response, keep_alive);
   body_ = request.method == Method::head ? nullptr : response.body;
   context_.state.metrics.count_response(response.status, body_ ? body_->size() : 0);
-  const std::array<net::const_buffer, 2> pieces{net::buffer(head_), body_ ? net::buffer(*body_) : net::const_buffer{}};
+  const std::array<net::const_buffer, 2> pieces{net::buffer(head_),
+                                                body_ ? net::buffer(*body_) : net::const_buffer{}};
   beast::get_lowest_layer(stream_).expires_after(kWriteDeadline);
-  net::async_write(stream_, pieces, [self = this->shared_from_this(), keep_alive](ErrorCode error, std::size_t) {
-    self->on_written(error, keep_alive);
-  });
+  net::async_write(stream_, pieces,
+                   [self = this->shared_from_this(), keep_alive](ErrorCode error, std::size_t) {
+                     self->on_written(error, keep_alive);
+                   });
 }
 
 template <typename Stream>
@@ -209,9 +225,10 @@ void HttpSession<Stream>::linger() {
   }
   if (++lingered_ > kMaxLingerReads) return;
   buffer_.consume(buffer_.size());
-  socket.async_read_some(buffer_.prepare(4096), [self = this->shared_from_this()](ErrorCode error, std::size_t) {
-    if (!error) self->linger();
-  });
+  socket.async_read_some(buffer_.prepare(4096),
+                         [self = this->shared_from_this()](ErrorCode error, std::size_t) {
+                           if (!error) self->linger();
+                         });
 }
 
 template class HttpSession<PlainStream>;

@@ -1,5 +1,6 @@
 #include "server/http_values.hpp"
 
+#include <array>
 #include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -55,7 +56,8 @@ double liking(std::string_view accept, std::string_view type) {
   for_each_part(accept, ',', [&](std::string_view range) {
     const std::string_view name = trimmed(range.substr(0, range.find(';')));
     const bool any = name == "*/*";
-    const bool any_subtype = name.size() > 2 && name.ends_with("/*") && type.starts_with(name.substr(0, name.size() - 1));
+    const bool any_subtype =
+        name.size() > 2 && name.ends_with("/*") && type.starts_with(name.substr(0, name.size() - 1));
     if (!any && !any_subtype && name != type) return;
     double q = 1;
     if (const auto at = range.find("q="); at != std::string_view::npos) {
@@ -105,29 +107,32 @@ ApiResponse json_response(std::string json, int status) {
 }
 
 std::string_view reason_phrase(int status) {
-  switch (status) {
-    case 200: return "OK";
-    case 204: return "No Content";
-    case 303: return "See Other";
-    case 304: return "Not Modified";
-    case 400: return "Bad Request";
-    case 401: return "Unauthorized";
-    case 403: return "Forbidden";
-    case 404: return "Not Found";
-    case 405: return "Method Not Allowed";
-    case 406: return "Not Acceptable";
-    case 408: return "Request Timeout";
-    case 409: return "Conflict";
-    case 413: return "Content Too Large";
-    case 414: return "URI Too Long";
-    case 415: return "Unsupported Media Type";
-    case 422: return "Unprocessable Content";
-    case 429: return "Too Many Requests";
-    case 431: return "Request Header Fields Too Large";
-    case 500: return "Internal Server Error";
-    case 503: return "Service Unavailable";
-    default: return "Unknown";
+  constexpr std::array<std::pair<int, std::string_view>, 20> kPhrases{{
+      {200, "OK"},
+      {204, "No Content"},
+      {303, "See Other"},
+      {304, "Not Modified"},
+      {400, "Bad Request"},
+      {401, "Unauthorized"},
+      {403, "Forbidden"},
+      {404, "Not Found"},
+      {405, "Method Not Allowed"},
+      {406, "Not Acceptable"},
+      {408, "Request Timeout"},
+      {409, "Conflict"},
+      {413, "Content Too Large"},
+      {414, "URI Too Long"},
+      {415, "Unsupported Media Type"},
+      {422, "Unprocessable Content"},
+      {429, "Too Many Requests"},
+      {431, "Request Header Fields Too Large"},
+      {500, "Internal Server Error"},
+      {503, "Service Unavailable"},
+  }};
+  for (const auto& [code, phrase] : kPhrases) {
+    if (code == status) return phrase;
   }
+  return "Unknown";
 }
 
 bool parse_target(std::string_view target, ApiRequest& into) {
@@ -149,7 +154,8 @@ bool parse_target(std::string_view target, ApiRequest& into) {
   return good;
 }
 
-std::optional<std::string_view> negotiate(std::string_view accept, const std::vector<std::string_view>& offered) {
+std::optional<std::string_view> negotiate(std::string_view accept,
+                                          const std::vector<std::string_view>& offered) {
   if (trimmed(accept).empty()) return offered.front();
   std::optional<std::string_view> best;
   double best_liking = 0;

@@ -19,9 +19,9 @@ enum class Method : std::uint8_t { get, head, post, patch, options, other };
 
 struct ApiRequest {
   Method method = Method::get;
-  std::string path;                                         // decoded, without the query
-  std::vector<std::pair<std::string, std::string>> query;   // decoded
-  std::vector<std::string> captures;                        // what stands for each {} of the route
+  std::string path;                                        // decoded, without the query
+  std::vector<std::pair<std::string, std::string>> query;  // decoded
+  std::vector<std::string> captures;                       // what stands for each {} of the route
   std::string accept;
   std::string accept_encoding;
   std::string if_none_match;
@@ -43,8 +43,8 @@ struct ApiRequest {
 struct ApiResponse {
   int status = 200;
   std::string content_type;
-  Bytes body;                              // null: none
-  std::string etag;                        // strong, quotes included; empty: none
+  Bytes body;        // null: none
+  std::string etag;  // strong, quotes included; empty: none
   std::string cache_control = "no-store";
   std::vector<std::pair<std::string, std::string>> headers;
 };
@@ -54,18 +54,21 @@ using ApiJob = std::function<ApiResponse()>;
 using ApiAnswer = std::variant<ApiResponse, ApiJob>;
 
 /// RFC 9457. `code` is for programs ("epoch-changed"), `detail` for people, `parameter` the offending one.
-ApiResponse problem(int status, std::string_view code, std::string_view detail, std::string_view parameter = {});
+ApiResponse problem(int status, std::string_view code, std::string_view detail,
+                    std::string_view parameter = {});
 
 ApiResponse json_response(std::string json, int status = 200);
 
 /// Reason phrase of a status code.
 std::string_view reason_phrase(int status);
 
-/// Splits and decodes "/a%20b?c=d" into path and query; false if an escape is broken or a byte is not allowed.
+/// Splits and decodes "/a%20b?c=d" into path and query; false if an escape is broken or a byte is not
+/// allowed.
 bool parse_target(std::string_view target, ApiRequest& into);
 
 /// Of `offered` media types the one that an Accept header likes best, the first of equals; nothing if none.
-std::optional<std::string_view> negotiate(std::string_view accept, const std::vector<std::string_view>& offered);
+std::optional<std::string_view> negotiate(std::string_view accept,
+                                          const std::vector<std::string_view>& offered);
 
 /// If-None-Match holds this tag (weak comparison) or "*".
 bool etag_matches(std::string_view if_none_match, std::string_view etag);

@@ -1,4 +1,5 @@
-// The network side: takes what the mapping says, serves it to everybody. One thread, the one that calls run().
+// The network side: takes what the mapping says, serves it to everybody. One thread, the one that calls
+// run().
 #pragma once
 
 #include <cstdint>
@@ -15,13 +16,13 @@ namespace flogmap {
 /// Serves one live map (and stored ones beside it) over HTTP and WebSocket.
 ///
 /// begin(), publish*(), rewrite_trajectory(), set_calibration() and drain() may be called from any thread and
-/// return at once: they merge into a mailbox keyed by tile (the network side's one mutex) and wake the network
-/// thread once, so the mapping never waits for a socket and nothing queues up. Values of one thread arrive in
-/// its order; a begin() discards what was published before it.
+/// return at once: they merge into a mailbox keyed by tile (the network side's one mutex) and wake the
+/// network thread once, so the mapping never waits for a socket and nothing queues up. Values of one thread
+/// arrive in its order; a begin() discards what was published before it.
 class Hub {
  public:
-  /// Binds the port. Throws std::runtime_error in one line if the options are impossible or the port is taken.
-  /// `control` must outlive the hub.
+  /// Binds the port. Throws std::runtime_error in one line if the options are impossible or the port is
+  /// taken. `control` must outlive the hub.
   Hub(const ServeOptions& options, SessionControl& control, HubInfo info);
   ~Hub();
   Hub(const Hub&) = delete;
@@ -37,7 +38,8 @@ class Hub {
   /// A stored map to be served beside the live one, as /maps/{id}. Before run() only.
   void add_stored_map(const std::string& id, MapBegin map);
 
-  /// The tiles that the change `revision` touched, as they now are. An update without a tile (null) removes it.
+  /// The tiles that the change `revision` touched, as they now are. An update without a tile (null) removes
+  /// it.
   void publish(std::uint64_t revision, std::vector<TileUpdate> tiles);
 
   /// One frame's tracking. A report with a pose is appended to the trajectory; poses are also streamed live.

@@ -27,7 +27,8 @@ net::ssl::context tls_context(const ServeOptions& options) {
   SSL_CTX_set_min_proto_version(tls.native_handle(), TLS1_2_VERSION);
   error_code error;
   tls.use_certificate_chain_file(options.tls_cert, error);
-  if (error) throw std::runtime_error("tls-cert: " + options.tls_cert + " is no PEM certificate: " + error.message());
+  if (error)
+    throw std::runtime_error("tls-cert: " + options.tls_cert + " is no PEM certificate: " + error.message());
   tls.use_private_key_file(options.tls_key, net::ssl::context::pem, error);
   if (error) throw std::runtime_error("tls-key: " + options.tls_key + " does not fit: " + error.message());
   return tls;
@@ -99,7 +100,8 @@ void Listener::welcome(tcp::socket socket) {
   socket.set_option(tcp::no_delay(true), error);
   PlainStream stream(std::move(socket));
   if (tls_) {
-    std::make_shared<HttpSession<TlsStream>>(TlsStream(std::move(stream), *tls_), context_, std::move(peer))->run();
+    std::make_shared<HttpSession<TlsStream>>(TlsStream(std::move(stream), *tls_), context_, std::move(peer))
+        ->run();
   } else {
     std::make_shared<HttpSession<PlainStream>>(std::move(stream), context_, std::move(peer))->run();
   }

@@ -54,7 +54,8 @@ bool Mailbox::rewrite_trajectory(std::vector<TrajectoryEntry> trajectory, std::s
   return merge([&](Contents& contents) {
     if (!trajectory.empty()) {
       const std::int64_t last_ns = trajectory.back().timestamp_ns;
-      std::erase_if(contents.appended, [=](const TrajectoryEntry& entry) { return entry.timestamp_ns <= last_ns; });
+      std::erase_if(contents.appended,
+                    [=](const TrajectoryEntry& entry) { return entry.timestamp_ns <= last_ns; });
     }
     contents.rewrite = Rewrite{std::move(trajectory), std::move(reason)};
   });

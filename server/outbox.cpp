@@ -21,7 +21,8 @@ std::chrono::nanoseconds interval_of(double hz) {
 
 void Outbox::resume(const Resume& known, const ServedMap& map) {
   resumed_revision_ = known.revision;
-  const bool same_path = !map.trajectory_was_rewritten() && known.trajectory_length <= map.trajectory().size();
+  const bool same_path =
+      !map.trajectory_was_rewritten() && known.trajectory_length <= map.trajectory().size();
   if (same_path) {
     trajectory_sent_ = known.trajectory_length;
   } else {
@@ -51,7 +52,8 @@ void Outbox::begin_snapshot(const ServedMap& map) {
     if (needs_[slot] != Need::round) need(slot);
     ++num_tiles;
   }
-  const std::uint64_t num_layers = choice_.layers.empty() ? board.info().grid.num_layers() : choice_.layers.size();
+  const std::uint64_t num_layers =
+      choice_.layers.empty() ? board.info().grid.num_layers() : choice_.layers.size();
   const std::uint64_t num_planes = choice_.planes == Planes::value ? 1 : 3;
   const std::uint64_t estimate = num_tiles * num_layers * num_planes * kTypicalLayerBytes / 2;
   control(to_shared(encode_snapshot_begin(num_tiles, estimate)));
@@ -150,7 +152,8 @@ void Outbox::sort_round(const ServedMap& map) {
     Slot slot;
     // Farthest first, so that the next one to send is at the back.
     bool operator<(const Candidate& other) const {
-      return std::tie(unseen, distance_squared, slot) > std::tie(other.unseen, other.distance_squared, other.slot);
+      return std::tie(unseen, distance_squared, slot) >
+             std::tie(other.unseen, other.distance_squared, other.slot);
     }
   };
   std::vector<Candidate> candidates;
@@ -164,7 +167,8 @@ void Outbox::sort_round(const ServedMap& map) {
   const auto ahead = candidates.end() - static_cast<std::ptrdiff_t>(num_sorted_);
   if (ahead != candidates.begin()) std::nth_element(candidates.begin(), ahead, candidates.end());
   std::sort(ahead, candidates.end());
-  std::transform(candidates.begin(), candidates.end(), round_.begin(), [](const Candidate& c) { return c.slot; });
+  std::transform(candidates.begin(), candidates.end(), round_.begin(),
+                 [](const Candidate& c) { return c.slot; });
 }
 
 bool Outbox::window_open() const {

@@ -16,17 +16,17 @@
 
 namespace flogmap {
 
-/// State of one connection to a map. It never holds a message for later that could be made anew: tiles wait as
-/// numbers, at most one each; poses, pictures and reports wait in one slot each, the newest replacing the older.
-/// So a slow client gets fewer and newer values, never gaps.
+/// State of one connection to a map. It never holds a message for later that could be made anew: tiles wait
+/// as numbers, at most one each; poses, pictures and reports wait in one slot each, the newest replacing the
+/// older. So a slow client gets fewer and newer values, never gaps.
 class Outbox {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   static constexpr std::size_t kMaxControls = 64;
-  static constexpr std::chrono::milliseconds kChangeInterval{100};      // changes at no more than 10 Hz
+  static constexpr std::chrono::milliseconds kChangeInterval{100};  // changes at no more than 10 Hz
   static constexpr std::chrono::milliseconds kTrajectoryInterval{200};
-  static constexpr std::size_t kTrajectoryPart = 1024;                  // entries in one message
+  static constexpr std::size_t kTrajectoryPart = 1024;  // entries in one message
   static constexpr std::chrono::seconds kAckDeadline{30};
 
   explicit Outbox(WireLimits limits = {}) : limits_(limits) {}
@@ -41,8 +41,8 @@ class Outbox {
 
   // What happens.
   void changed(std::span<const Slot> slots);
-  void rewritten(std::string reason);   // the trajectory
-  void reset(const ServedMap& map);     // another map begins; call control(encode_reset()) before
+  void rewritten(std::string reason);  // the trajectory
+  void reset(const ServedMap& map);    // another map begins; call control(encode_reset()) before
   /// False if too many wait: the client does not read, close it.
   bool control(Bytes message);
   void pose(Bytes message) { pose_ = std::move(message); }
@@ -62,7 +62,9 @@ class Outbox {
 
   [[nodiscard]] bool subscribed() const { return subscribed_; }
   [[nodiscard]] bool wants_pose() const { return pose_interval_.has_value(); }
-  [[nodiscard]] bool holds_image(ImageStream stream) const { return images_[static_cast<int>(stream)] != nullptr; }
+  [[nodiscard]] bool holds_image(ImageStream stream) const {
+    return images_[static_cast<int>(stream)] != nullptr;
+  }
   [[nodiscard]] std::uint64_t unacknowledged() const { return sent_bytes_ - acknowledged_bytes_; }
   [[nodiscard]] std::size_t num_pending() const { return waiting_.size() + round_.size(); }
   [[nodiscard]] std::size_t memory_bytes() const;

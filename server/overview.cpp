@@ -39,7 +39,8 @@ Cell overview_cell(const std::array<Cell, 4>& cells, float N_K) {
   }
   if (rays == 0) return {};
   const float most = std::min(std::ceil(N_K), 65535.0F);
-  return {to_membership(KE / K), to_membership(KO / K), std::min(rays, static_cast<std::uint16_t>(most)), change};
+  return {to_membership(KE / K), to_membership(KO / K), std::min(rays, static_cast<std::uint16_t>(most)),
+          change};
 }
 
 Tile overview_tile(const ChildTiles& children, const MapInfo& info) {

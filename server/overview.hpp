@@ -12,8 +12,8 @@ namespace flogmap {
 /// The four tiles below an overview tile, lower left, lower right, upper left, upper right; null: never seen.
 using ChildTiles = std::array<const Tile*, 4>;
 
-/// One cell out of the four below it: K E by min, K O by max, K by max, change by max; E and O are then divided
-/// by the new K. Unseen cells count with K E = 0. N_K: full_confidence_rays of their layer.
+/// One cell out of the four below it: K E by min, K O by max, K by max, change by max; E and O are then
+/// divided by the new K. Unseen cells count with K E = 0. N_K: full_confidence_rays of their layer.
 Cell overview_cell(const std::array<Cell, 4>& cells, float N_K);
 
 /// The tile that covers four, half as fine. Its cells' `rays` stop at N_K, and its revision is the newest.

@@ -20,7 +20,8 @@ using PaletteTable = std::array<Colour, 256>;
 /// Nothing if there is no palette of this name.
 std::optional<Palette> palette_named(std::string_view name);
 
-/// Colours of 0 .. 255. `grey` runs from white to black, as the paper's maps do; the others from dark to light.
+/// Colours of 0 .. 255. `grey` runs from white to black, as the paper's maps do; the others from dark to
+/// light.
 const PaletteTable& table_of(Palette palette);
 
 }  // namespace flogmap

@@ -7,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-
 namespace flogmap {
 namespace {
 
@@ -20,13 +19,15 @@ std::string to_string(const std::vector<std::uint8_t>& bytes) { return {bytes.be
 /// As large as wanted, never larger than it is.
 cv::Mat fitted(const cv::Mat& picture, int max_width_px, int interpolation) {
   if (max_width_px <= 0 || picture.cols <= max_width_px) return picture;
-  const int height = std::max(1, static_cast<int>(std::lround(picture.rows * max_width_px / double(picture.cols))));
+  const int height =
+      std::max(1, static_cast<int>(std::lround(picture.rows * max_width_px / double(picture.cols))));
   cv::Mat out;
   cv::resize(picture, out, cv::Size(max_width_px, height), 0, 0, interpolation);
   return out;
 }
 
-EncodedPicture described(const cv::Mat& full, const cv::Mat& sent, PictureKey key, std::int64_t timestamp_ns) {
+EncodedPicture described(const cv::Mat& full, const cv::Mat& sent, PictureKey key,
+                         std::int64_t timestamp_ns) {
   EncodedPicture picture;
   picture.stream = key.stream;
   picture.timestamp_ns = timestamp_ns;
@@ -94,7 +95,8 @@ EncodedPicture encode_disparity(const Image<float>& image, PictureKey key, std::
 PictureKey picture_key(const ImageRequest& request) {
   constexpr std::array kWidths{1280, 960, 640, 480, 320, 240, 160};
   if (request.max_width_px <= 0) return {request.stream, 0};
-  const auto width = std::find_if(kWidths.begin(), kWidths.end(), [&](int w) { return w <= request.max_width_px; });
+  const auto width =
+      std::find_if(kWidths.begin(), kWidths.end(), [&](int w) { return w <= request.max_width_px; });
   return {request.stream, width == kWidths.end() ? kWidths.back() : *width};
 }
 

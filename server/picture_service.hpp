@@ -8,8 +8,8 @@
 
 namespace flogmap {
 
-/// Brings the newest pictures to the pages that want them: each size encoded once, on a thread of its own, and
-/// only while somebody waits for it.
+/// Brings the newest pictures to the pages that want them: each size encoded once, on a thread of its own,
+/// and only while somebody waits for it.
 class PictureService {
  public:
   /// Runs a function on the network thread; may be called from any thread.

@@ -39,7 +39,8 @@ void append_file(const std::string& path, std::vector<AccessToken>& tokens) {
     if (!(words >> role)) continue;
     words >> secret;
     const std::string where = path + ":" + std::to_string(number);
-    if (role != "view" && role != "control") refuse(where + ": role must be view or control, got '" + role + "'");
+    if (role != "view" && role != "control")
+      refuse(where + ": role must be view or control, got '" + role + "'");
     tokens.push_back(token_of(role == "view" ? Role::view : Role::control, secret, where));
   }
 }

@@ -28,9 +28,10 @@ struct ServeOptions {
   std::uint16_t port = 8080;                 // 0: any free one
   std::string web_root;                      // the built page; empty: a page that says it is missing
 
-  std::vector<AccessToken> tokens;         // empty: everybody who can connect has `control`
-  bool insecure_no_auth = false;           // allow a non-loopback address without tokens
-  std::vector<std::string> allow_hosts;    // names in the Host header besides loopback and numeric own addresses
+  std::vector<AccessToken> tokens;  // empty: everybody who can connect has `control`
+  bool insecure_no_auth = false;    // allow a non-loopback address without tokens
+  std::vector<std::string>
+      allow_hosts;  // names in the Host header besides loopback and numeric own addresses
   std::vector<std::string> allow_origins;  // "https://maps.example" besides the page's own origin
   std::string tls_cert;                    // PEM files; both or none
   std::string tls_key;
@@ -49,9 +50,9 @@ struct HubInfo {
   std::string version = "unknown";
 };
 
-/// Tokens of a file, one `view SECRET` or `control SECRET` a line, '#' starts a comment; an empty path gives none.
-/// Then those of the environment: FLOGMAP_VIEW_TOKEN and FLOGMAP_CONTROL_TOKEN.
-/// Throws std::runtime_error naming file and line.
+/// Tokens of a file, one `view SECRET` or `control SECRET` a line, '#' starts a comment; an empty path gives
+/// none. Then those of the environment: FLOGMAP_VIEW_TOKEN and FLOGMAP_CONTROL_TOKEN. Throws
+/// std::runtime_error naming file and line.
 std::vector<AccessToken> read_tokens(const std::string& path);
 
 /// Throws std::runtime_error naming option, value and what is allowed; refuses a non-loopback address without

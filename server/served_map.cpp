@@ -36,9 +36,9 @@ void ServedMap::append(const TrajectoryEntry& entry) { trajectory_.push_back(ent
 
 void ServedMap::rewrite(std::vector<TrajectoryEntry> trajectory) {
   if (!trajectory.empty()) {
-    const auto later = std::find_if(trajectory_.begin(), trajectory_.end(), [&](const TrajectoryEntry& entry) {
-      return entry.timestamp_ns > trajectory.back().timestamp_ns;
-    });
+    const auto later = std::find_if(
+        trajectory_.begin(), trajectory_.end(),
+        [&](const TrajectoryEntry& entry) { return entry.timestamp_ns > trajectory.back().timestamp_ns; });
     trajectory.insert(trajectory.end(), later, trajectory_.end());
   }
   trajectory_ = std::move(trajectory);
@@ -75,8 +75,8 @@ Bytes ServedMap::trajectory_message(std::size_t first, std::size_t count, const 
   TrajectoryPart& part = latest_part_;
   if (part.bytes && part.first == first && part.count == count && part.rewrite == rewrite) return part.bytes;
   const std::span<const TrajectoryEntry> points(trajectory_.data() + first, count);
-  std::string bytes = rewrite ? encode_trajectory_rewrite(points, *rewrite_reason)
-                              : encode_trajectory_append(first, points);
+  std::string bytes =
+      rewrite ? encode_trajectory_rewrite(points, *rewrite_reason) : encode_trajectory_append(first, points);
   part = {first, count, rewrite, to_shared(std::move(bytes))};
   return part.bytes;
 }

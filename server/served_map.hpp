@@ -41,7 +41,8 @@ class ServedMap {
   void rewrite(std::vector<TrajectoryEntry> trajectory);
 
   /// A TileBatch of these slots, removed tiles included. Clients in step share its bytes.
-  Bytes tile_batch(std::uint64_t revision, bool complete, std::span<const Slot> slots, const TileChoice& choice);
+  Bytes tile_batch(std::uint64_t revision, bool complete, std::span<const Slot> slots,
+                   const TileChoice& choice);
 
   /// TrajectoryAppend, or TrajectoryRewrite if `reason` is not null, of entries [first, first + count).
   Bytes trajectory_message(std::size_t first, std::size_t count, const std::string* rewrite_reason);

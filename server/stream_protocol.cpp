@@ -77,7 +77,9 @@ std::optional<StreamClose> StreamProtocol::on(const InspectCell& inspect, Time) 
   return send_control(encode_cell_column(inspect_cell(*state_.live, inspect.x_m, inspect.y_m)));
 }
 
-std::optional<StreamClose> StreamProtocol::on(const Ping& ping, Time) { return send_control(encode_pong(ping.nonce)); }
+std::optional<StreamClose> StreamProtocol::on(const Ping& ping, Time) {
+  return send_control(encode_pong(ping.nonce));
+}
 
 std::optional<StreamClose> StreamProtocol::send_control(std::string message) {
   if (outbox_.control(to_shared(std::move(message)))) return std::nullopt;
@@ -85,7 +87,8 @@ std::optional<StreamClose> StreamProtocol::send_control(std::string message) {
 }
 
 std::optional<StreamClose> StreamProtocol::check_deadlines(Time now) {
-  if (!greeted_ && now - connected_at_ >= kHelloDeadline) return StreamClose{kCloseNoHello, "no Hello within 5 s"};
+  if (!greeted_ && now - connected_at_ >= kHelloDeadline)
+    return StreamClose{kCloseNoHello, "no Hello within 5 s"};
   if (outbox_.overdue(now)) return StreamClose{kCloseTooSlow, "nothing acknowledged for 30 s"};
   if (now - heard_at_ >= kDeadAfter) return StreamClose{kCloseTooSlow, "not heard of for 45 s"};
   return std::nullopt;

@@ -11,7 +11,8 @@ TileBoard::TileBoard(MapInfo info, Operators operators) : info_(std::move(info))
 
 std::vector<Slot> TileBoard::update(const std::vector<TileUpdate>& updates) {
   std::vector<Slot> changed;
-  std::map<TileKey, std::uint64_t> parents;  // of the level that was just done, and the revision of their change
+  std::map<TileKey, std::uint64_t>
+      parents;  // of the level that was just done, and the revision of their change
   for (const TileUpdate& update : updates) {
     if (!take(update)) continue;
     const TileKey key{0, update.index.x, update.index.y};
@@ -123,9 +124,9 @@ const Bytes& TileBoard::layer_message(Slot slot, int layer, Planes planes) {
     encoded = encode_layer_planes(layer, planes, deflate_planes(value(slot, layer)), {});
   } else {
     const std::shared_ptr<const Tile> cells = tile(slot);
-    encoded = encode_layer_planes(layer, planes,
-                                  deflate_planes(evidence_planes(*cells, layer, info_.full_confidence_rays[layer])),
-                                  deflate_planes(change_plane(*cells, layer)));
+    encoded = encode_layer_planes(
+        layer, planes, deflate_planes(evidence_planes(*cells, layer, info_.full_confidence_rays[layer])),
+        deflate_planes(change_plane(*cells, layer)));
   }
   message = to_shared(std::move(encoded));
   return message;
@@ -134,8 +135,8 @@ const Bytes& TileBoard::layer_message(Slot slot, int layer, Planes planes) {
 std::vector<Bytes> TileBoard::layer_messages(Slot slot, const TileChoice& choice) {
   std::vector<Bytes> layers;
   for (int layer = 0; layer < info_.grid.num_layers(); ++layer) {
-    const bool chosen = choice.layers.empty() ||
-                        std::binary_search(choice.layers.begin(), choice.layers.end(), layer);
+    const bool chosen =
+        choice.layers.empty() || std::binary_search(choice.layers.begin(), choice.layers.end(), layer);
     if (chosen) layers.push_back(layer_message(slot, layer, choice.planes));
   }
   return layers;

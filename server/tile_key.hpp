@@ -12,7 +12,8 @@ namespace flogmap {
 /// Overview levels of every map, level 0 included: the coarsest cell is 2^5 times as large.
 inline constexpr int kOverviewLevels = 6;
 
-/// Tile (x, y) of level k covers [x s, (x + 1) s) x [y s, (y + 1) s) metres, s = 64 * 2^k * cell size. y is up.
+/// Tile (x, y) of level k covers [x s, (x + 1) s) x [y s, (y + 1) s) metres, s = 64 * 2^k * cell size. y is
+/// up.
 struct TileKey {
   std::uint32_t level = 0;
   std::int32_t x = 0;

@@ -17,7 +17,9 @@ std::span<const Cell> cells_of(const Tile& tile, int layer) {
 }
 
 /// round(255 * membership / 65535), exactly: 65535 = 255 * 257.
-std::uint8_t to_byte(std::uint16_t membership) { return static_cast<std::uint8_t>((membership + 128U) / 257U); }
+std::uint8_t to_byte(std::uint16_t membership) {
+  return static_cast<std::uint8_t>((membership + 128U) / 257U);
+}
 
 std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::lround(255.0F * value)); }
 
@@ -57,9 +59,11 @@ PlaneBytes change_plane(const Tile& tile, int layer) {
 std::string deflate_planes(const PlaneBytes& planes) {
   if (planes.empty()) return {};
   using Compressor = std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)>;
-  thread_local const Compressor compressor(libdeflate_alloc_compressor(kDeflateLevel), libdeflate_free_compressor);
+  thread_local const Compressor compressor(libdeflate_alloc_compressor(kDeflateLevel),
+                                           libdeflate_free_compressor);
   std::string out(libdeflate_zlib_compress_bound(compressor.get(), planes.size()), '\0');
-  out.resize(libdeflate_zlib_compress(compressor.get(), planes.data(), planes.size(), out.data(), out.size()));
+  out.resize(
+      libdeflate_zlib_compress(compressor.get(), planes.data(), planes.size(), out.data(), out.size()));
   out.shrink_to_fit();
   return out;
 }

@@ -34,7 +34,7 @@ class Viewers {
   void map_changed(std::span<const Slot> slots);
   void map_reset(const std::string& reason);
   void trajectory_rewritten(const std::string& reason);
-  void tracked();        // state.tracking is new
+  void tracked();         // state.tracking is new
   void status_changed();  // state.status or the session is
   void playback_changed();
   void dismiss_all(const std::string& reason);

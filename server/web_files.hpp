@@ -8,7 +8,8 @@
 
 namespace flogmap {
 
-/// The built page, read into memory once. Only paths that were read can be asked for, so none leads out of it.
+/// The built page, read into memory once. Only paths that were read can be asked for, so none leads out of
+/// it.
 class WebFiles {
  public:
   /// All files below `folder`; none if it does not exist.

@@ -138,7 +138,8 @@ std::string encode_pong(std::uint64_t nonce) {
   return bytes_of(message);
 }
 
-std::string encode_layer_planes(int layer, Planes planes, std::string_view deflated, std::string_view change) {
+std::string encode_layer_planes(int layer, Planes planes, std::string_view deflated,
+                                std::string_view change) {
   v1::LayerPlanes message;
   message.set_layer(static_cast<std::uint32_t>(layer));
   if (planes == Planes::value) {

@@ -16,7 +16,8 @@ std::optional<ClientMessage> read(const v1::Hello& from) {
 }
 
 std::optional<ImageRequest> read(const v1::ImageRequest& from) {
-  if (from.stream() < v1::IMAGE_STREAM_LEFT || from.stream() > v1::IMAGE_STREAM_DISPARITY) return std::nullopt;
+  if (from.stream() < v1::IMAGE_STREAM_LEFT || from.stream() > v1::IMAGE_STREAM_DISPARITY)
+    return std::nullopt;
   if (!std::isfinite(from.max_fps()) || from.max_fps() < 0) return std::nullopt;
   const auto stream = static_cast<ImageStream>(from.stream() - v1::IMAGE_STREAM_LEFT);
   return ImageRequest{stream, from.max_fps(), static_cast<int>(std::min(from.max_width(), 1U << 16U))};
@@ -66,18 +67,25 @@ std::optional<ClientMessage> decode_client_message(std::string_view bytes) {
   v1::ClientMessage message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
   switch (message.message_case()) {
-    case v1::ClientMessage::kHello: return read(message.hello());
-    case v1::ClientMessage::kSubscribe: return read(message.subscribe());
-    case v1::ClientMessage::kViewport: return read(message.viewport());
-    case v1::ClientMessage::kAck: return Ack{message.ack().rev(), message.ack().bytes()};
-    case v1::ClientMessage::kForget: return read(message.forget());
+    case v1::ClientMessage::kHello:
+      return read(message.hello());
+    case v1::ClientMessage::kSubscribe:
+      return read(message.subscribe());
+    case v1::ClientMessage::kViewport:
+      return read(message.viewport());
+    case v1::ClientMessage::kAck:
+      return Ack{message.ack().rev(), message.ack().bytes()};
+    case v1::ClientMessage::kForget:
+      return read(message.forget());
     case v1::ClientMessage::kInspectCell: {
       const double x = message.inspect_cell().x(), y = message.inspect_cell().y();
       if (!std::isfinite(x) || !std::isfinite(y)) return std::nullopt;
       return InspectCell{x, y};
     }
-    case v1::ClientMessage::kPing: return Ping{message.ping().nonce()};
-    case v1::ClientMessage::MESSAGE_NOT_SET: break;
+    case v1::ClientMessage::kPing:
+      return Ping{message.ping().nonce()};
+    case v1::ClientMessage::MESSAGE_NOT_SET:
+      break;
   }
   return std::nullopt;
 }

@@ -10,9 +10,12 @@ namespace {
 
 v1::ImageStream to_proto(ImageStream stream) {
   switch (stream) {
-    case ImageStream::left: return v1::IMAGE_STREAM_LEFT;
-    case ImageStream::right: return v1::IMAGE_STREAM_RIGHT;
-    case ImageStream::disparity: return v1::IMAGE_STREAM_DISPARITY;
+    case ImageStream::left:
+      return v1::IMAGE_STREAM_LEFT;
+    case ImageStream::right:
+      return v1::IMAGE_STREAM_RIGHT;
+    case ImageStream::disparity:
+      return v1::IMAGE_STREAM_DISPARITY;
   }
   return v1::IMAGE_STREAM_UNSPECIFIED;
 }
@@ -21,7 +24,8 @@ using Corner = std::pair<float, float>;
 
 std::vector<Corner> unmatched_corners(const Tracking& tracking) {
   std::vector<Corner> matched;
-  for (const Match& match : tracking.matches) matched.emplace_back(match.current_px.x(), match.current_px.y());
+  for (const Match& match : tracking.matches)
+    matched.emplace_back(match.current_px.x(), match.current_px.y());
   std::sort(matched.begin(), matched.end());
   std::vector<Corner> unmatched;
   for (const Eigen::Vector2f& corner_px : tracking.corners_px) {

@@ -14,33 +14,48 @@ std::string layer_name(const GridSpec& grid, int layer) {
 
 std::string_view name_of(SessionState state) {
   switch (state) {
-    case SessionState::starting: return "starting";
-    case SessionState::running: return "running";
-    case SessionState::paused: return "paused";
-    case SessionState::finished: return "finished";
-    case SessionState::failed: return "failed";
-    case SessionState::stored: return "stored";
-    case SessionState::draining: return "draining";
+    case SessionState::starting:
+      return "starting";
+    case SessionState::running:
+      return "running";
+    case SessionState::paused:
+      return "paused";
+    case SessionState::finished:
+      return "finished";
+    case SessionState::failed:
+      return "failed";
+    case SessionState::stored:
+      return "stored";
+    case SessionState::draining:
+      return "draining";
   }
   return "unknown";
 }
 
 std::string_view name_of(TrackingState state) {
   switch (state) {
-    case TrackingState::initialising: return "initialising";
-    case TrackingState::ok: return "ok";
-    case TrackingState::weak: return "weak";
-    case TrackingState::lost: return "lost";
+    case TrackingState::initialising:
+      return "initialising";
+    case TrackingState::ok:
+      return "ok";
+    case TrackingState::weak:
+      return "weak";
+    case TrackingState::lost:
+      return "lost";
   }
   return "unknown";
 }
 
 v1::TrackingState to_proto(TrackingState state) {
   switch (state) {
-    case TrackingState::ok: return v1::TRACKING_STATE_OK;
-    case TrackingState::weak: return v1::TRACKING_STATE_WEAK;
-    case TrackingState::lost: return v1::TRACKING_STATE_LOST;
-    case TrackingState::initialising: break;
+    case TrackingState::ok:
+      return v1::TRACKING_STATE_OK;
+    case TrackingState::weak:
+      return v1::TRACKING_STATE_WEAK;
+    case TrackingState::lost:
+      return v1::TRACKING_STATE_LOST;
+    case TrackingState::initialising:
+      break;
   }
   return v1::TRACKING_STATE_INITIALISING;
 }
@@ -49,9 +64,12 @@ namespace {
 
 v1::Operators to_proto(Operators operators) {
   switch (operators) {
-    case Operators::minmax: return v1::OPERATORS_MINMAX;
-    case Operators::lukasiewicz: return v1::OPERATORS_LUKASIEWICZ;
-    case Operators::algebraic: break;
+    case Operators::minmax:
+      return v1::OPERATORS_MINMAX;
+    case Operators::lukasiewicz:
+      return v1::OPERATORS_LUKASIEWICZ;
+    case Operators::algebraic:
+      break;
   }
   return v1::OPERATORS_ALGEBRAIC;
 }

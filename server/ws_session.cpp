@@ -53,10 +53,12 @@ void WsSession<Stream>::run(beast::http::request<beast::http::string_body> upgra
   stream_.read_message_max(kMaxClientFrame);
   stream_.auto_fragment(false);
   stream_.binary(true);
-  stream_.control_callback([this](websocket::frame_type, boost::string_view) { protocol_.heard(steady_clock::now()); });
+  stream_.control_callback(
+      [this](websocket::frame_type, boost::string_view) { protocol_.heard(steady_clock::now()); });
   ErrorCode ignored;
   beast::get_lowest_layer(stream_).socket().set_option(net::ip::tcp::no_delay(true), ignored);
-  stream_.async_accept(upgrade_, [self = this->shared_from_this()](ErrorCode error) { self->on_accept(error); });
+  stream_.async_accept(upgrade_,
+                       [self = this->shared_from_this()](ErrorCode error) { self->on_accept(error); });
 }
 
 template <typename Stream>
@@ -71,7 +73,8 @@ void WsSession<Stream>::on_accept(ErrorCode error) {
 
 template <typename Stream>
 void WsSession<Stream>::read() {
-  stream_.async_read(read_, [self = this->shared_from_this()](ErrorCode error, std::size_t) { self->on_read(error); });
+  stream_.async_read(
+      read_, [self = this->shared_from_this()](ErrorCode error, std::size_t) { self->on_read(error); });
 }
 
 template <typename Stream>
@@ -82,9 +85,10 @@ void WsSession<Stream>::on_read(ErrorCode error) {
     return cut();
   }
   const auto frame = read_.data();
-  auto refused = stream_.got_binary()
-                     ? protocol_.receive({static_cast<const char*>(frame.data()), frame.size()}, steady_clock::now())
-                     : StreamClose{kCloseBadFrame, "frames are binary"};
+  auto refused =
+      stream_.got_binary()
+          ? protocol_.receive({static_cast<const char*>(frame.data()), frame.size()}, steady_clock::now())
+          : StreamClose{kCloseBadFrame, "frames are binary"};
   read_.consume(read_.size());
   if (refused) return close(*refused);
   pump();
@@ -101,9 +105,8 @@ void WsSession<Stream>::pump() {
     return;
   }
   context_.state.metrics.count_stream_message(writing_->size());
-  stream_.async_write(net::buffer(*writing_), [self = this->shared_from_this()](ErrorCode error, std::size_t) {
-    self->on_written(error);
-  });
+  stream_.async_write(net::buffer(*writing_), [self = this->shared_from_this()](
+                                                  ErrorCode error, std::size_t) { self->on_written(error); });
 }
 
 template <typename Stream>

@@ -15,12 +15,14 @@ struct WantedTile {
   std::uint64_t known_revision = 0;
 };
 
-std::int64_t integer_field(const nlohmann::json& object, const char* name, std::int64_t least, std::int64_t most) {
+std::int64_t integer_field(const nlohmann::json& object, const char* name, std::int64_t least,
+                           std::int64_t most) {
   if (object.contains(name) && object[name].is_number_integer()) {
     const auto value = object[name].get<std::int64_t>();
     if (value >= least && value <= most) return value;
   }
-  throw RefusedRequest(422, "bad-value", std::string("each tile needs an integer ") + name + " in range", name);
+  throw RefusedRequest(422, "bad-value", std::string("each tile needs an integer ") + name + " in range",
+                       name);
 }
 
 std::vector<WantedTile> wanted_tiles(const nlohmann::json& body) {
@@ -35,7 +37,8 @@ std::vector<WantedTile> wanted_tiles(const nlohmann::json& body) {
     one.key.level = static_cast<std::uint32_t>(integer_field(tile, "level", 0, kOverviewLevels - 1));
     one.key.x = static_cast<std::int32_t>(integer_field(tile, "x", INT32_MIN, INT32_MAX));
     one.key.y = static_cast<std::int32_t>(integer_field(tile, "y", INT32_MIN, INT32_MAX));
-    if (tile.contains("rev")) one.known_revision = static_cast<std::uint64_t>(integer_field(tile, "rev", 0, INT64_MAX));
+    if (tile.contains("rev"))
+      one.known_revision = static_cast<std::uint64_t>(integer_field(tile, "rev", 0, INT64_MAX));
     wanted.push_back(one);
   }
   return wanted;

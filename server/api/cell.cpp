@@ -30,9 +30,12 @@ ApiAnswer get_cell(const ApiRequest& request, ServerState& state) {
                       {"conflict", evidence.conflict},
                       {"change", evidence.change}});
   }
-  const Json json = {{"x", x_m},          {"y", y_m},
-                     {"i", cell.x},       {"j", cell.y},
-                     {"epoch", column.epoch}, {"rev", column.revision},
+  const Json json = {{"x", x_m},
+                     {"y", y_m},
+                     {"i", cell.x},
+                     {"j", cell.y},
+                     {"epoch", column.epoch},
+                     {"rev", column.revision},
                      {"layers", layers}};
   return json_response(json.dump());
 }

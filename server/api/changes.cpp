@@ -14,7 +14,8 @@ constexpr std::int64_t kUsualLimit = 1000;
 constexpr std::int64_t kMaxLimit = 10000;
 
 /// Slots that changed after `since`, oldest first.
-std::vector<Slot> changed_slots(const TileBoard& board, std::uint64_t since, const std::optional<Bounds>& bbox) {
+std::vector<Slot> changed_slots(const TileBoard& board, std::uint64_t since,
+                                const std::optional<Bounds>& bbox) {
   std::vector<Slot> slots;
   for (Slot slot = 0; slot < board.num_slots(); ++slot) {
     if (board.revision(slot) <= since) continue;
@@ -28,7 +29,8 @@ std::vector<Slot> changed_slots(const TileBoard& board, std::uint64_t since, con
   return slots;
 }
 
-/// At most `limit`, but always whole revisions, and at least one: so that `rev` says truly how far the client is.
+/// At most `limit`, but always whole revisions, and at least one: so that `rev` says truly how far the client
+/// is.
 void cut(std::vector<Slot>& slots, const TileBoard& board, std::size_t limit) {
   if (slots.size() <= limit) return;
   auto end = slots.begin() + static_cast<std::ptrdiff_t>(limit);
@@ -43,8 +45,8 @@ void cut(std::vector<Slot>& slots, const TileBoard& board, std::size_t limit) {
 void require_epoch(const ApiRequest& request, const ServedMap& map) {
   const auto epoch = request.parameter("epoch");
   if (!epoch || *epoch == map.epoch()) return;
-  throw RefusedRequest(409, "epoch-changed", "another map began; its epoch is " + map.epoch() + ", start from since=0",
-                       "epoch");
+  throw RefusedRequest(409, "epoch-changed",
+                       "another map began; its epoch is " + map.epoch() + ", start from since=0", "epoch");
 }
 
 ApiAnswer get_changes(const ApiRequest& request, ServerState& state) {
@@ -75,6 +77,8 @@ ApiAnswer get_changes(const ApiRequest& request, ServerState& state) {
 
 }  // namespace
 
-std::vector<Route> change_routes() { return {{Method::get, "/api/v1/maps/{}/changes", Role::view, get_changes}}; }
+std::vector<Route> change_routes() {
+  return {{Method::get, "/api/v1/maps/{}/changes", Role::view, get_changes}};
+}
 
 }  // namespace flogmap

@@ -8,7 +8,9 @@ namespace {
 
 ExportFormat requested_format(const ApiRequest& request) {
   const auto name = request.parameter("format");
-  if (!name) throw RefusedRequest(400, "missing-parameter", "format is missing: ros, png, ply, pcd, bt, tum or kitti", "format");
+  if (!name)
+    throw RefusedRequest(400, "missing-parameter", "format is missing: ros, png, ply, pcd, bt, tum or kitti",
+                         "format");
   try {
     return export_format(*name);
   } catch (const std::invalid_argument& error) {
@@ -49,6 +51,8 @@ ApiAnswer get_export(const ApiRequest& request, ServerState& state) {
 
 }  // namespace
 
-std::vector<Route> export_routes() { return {{Method::get, "/api/v1/maps/{}/export", Role::view, get_export}}; }
+std::vector<Route> export_routes() {
+  return {{Method::get, "/api/v1/maps/{}/export", Role::view, get_export}};
+}
 
 }  // namespace flogmap

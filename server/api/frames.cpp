@@ -31,6 +31,8 @@ ApiAnswer get_latest(const ApiRequest& request, ServerState& state) {
 
 }  // namespace
 
-std::vector<Route> frame_routes() { return {{Method::get, "/api/v1/frames/{}/latest", Role::view, get_latest}}; }
+std::vector<Route> frame_routes() {
+  return {{Method::get, "/api/v1/frames/{}/latest", Role::view, get_latest}};
+}
 
 }  // namespace flogmap

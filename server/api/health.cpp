@@ -15,7 +15,8 @@ std::vector<std::string> reasons_not_ready(const ServerState& state) {
   std::vector<std::string> reasons;
   if (state.draining) reasons.emplace_back("shutting down");
   if (!state.live) reasons.emplace_back("the map has not begun yet: source and calibration are being opened");
-  if (state.session_state() == SessionState::failed) reasons.push_back("the source failed: " + state.control.reason());
+  if (state.session_state() == SessionState::failed)
+    reasons.push_back("the source failed: " + state.control.reason());
   return reasons;
 }
 
@@ -41,7 +42,8 @@ void collect(ServerState& state) {
   metrics.set("flogmap_frames_lost", "Frames without a pose", static_cast<double>(report.lost));
   metrics.set("flogmap_frames_dropped", "Frames dropped because the queue was full",
               static_cast<double>(report.dropped_frames));
-  metrics.set("flogmap_frames_skipped", "Frames that could not be read", static_cast<double>(report.skipped_frames));
+  metrics.set("flogmap_frames_skipped", "Frames that could not be read",
+              static_cast<double>(report.skipped_frames));
   metrics.set("flogmap_views_mapped", "Views in the map", static_cast<double>(report.mapped_views));
   metrics.set("flogmap_loops", "Loops closed", static_cast<double>(report.loops));
   for (const StageReport& stage : report.stages) {

@@ -13,22 +13,23 @@ constexpr std::int64_t kMaxCells = 4 * kMaxPixels;
 MapArea requested_area(const MapSnapshot& map, const std::optional<Bounds>& bbox) {
   if (!bbox) return tiled_area(map);
   const double a = map.info.grid.cell_size_m, most = 2e9 * a;
-  const bool far = std::abs(bbox->x_min) > most || std::abs(bbox->y_min) > most || std::abs(bbox->x_max) > most ||
-                   std::abs(bbox->y_max) > most;
+  const bool far = std::abs(bbox->x_min) > most || std::abs(bbox->y_min) > most ||
+                   std::abs(bbox->x_max) > most || std::abs(bbox->y_max) > most;
   if (far) throw RefusedRequest(400, "bad-parameter", "no cell lies so far out", "bbox");
   const CellIndex last = cell_at(map.info.grid, bbox->x_max, bbox->y_max);
   return {cell_at(map.info.grid, bbox->x_min, bbox->y_min), {last.x + 1, last.y + 1}};
 }
 
-ApiResponse picture_of(const MapSnapshot& map, const MapArea& area, const PictureChoice& choice, const Rules& rules,
-                       int max_width_px) {
+ApiResponse picture_of(const MapSnapshot& map, const MapArea& area, const PictureChoice& choice,
+                       const Rules& rules, int max_width_px) {
   MapPicture picture = map_picture(map, area, choice.layer, rules);
-  for (std::uint8_t& pixel : picture.grey.pixels) pixel = static_cast<std::uint8_t>(255 - pixel);  // back to values
+  for (std::uint8_t& pixel : picture.grey.pixels)
+    pixel = static_cast<std::uint8_t>(255 - pixel);  // back to values
   ApiResponse response;
   response.content_type = "image/png";
   response.body = to_shared(encode_coloured_png(picture.grey, choice.palette, max_width_px));
-  response.headers.emplace_back("Flogmap-Origin", std::to_string(picture.origin_x_m()) + "," +
-                                                      std::to_string(picture.origin_y_m()));
+  response.headers.emplace_back(
+      "Flogmap-Origin", std::to_string(picture.origin_x_m()) + "," + std::to_string(picture.origin_y_m()));
   response.headers.emplace_back("Flogmap-Cell-Size", std::to_string(picture.cell_size_m));
   return response;
 }
@@ -45,10 +46,12 @@ ApiAnswer get_image(const ApiRequest& request, ServerState& state) {
     nothing.status = 204;
     return nothing;
   }
-  const bool huge = area.width() > kMaxCells || area.height() > kMaxCells || area.width() * area.height() > kMaxCells;
+  const bool huge =
+      area.width() > kMaxCells || area.height() > kMaxCells || area.width() * area.height() > kMaxCells;
   const std::int64_t shown_width = width > 0 ? std::min<std::int64_t>(width, area.width()) : area.width();
   if (huge || shown_width * (area.height() * shown_width / area.width() + 1) > kMaxPixels) {
-    throw RefusedRequest(422, "picture-too-large", "at most 16 megapixels of 64 million cells; give bbox or width", "width");
+    throw RefusedRequest(422, "picture-too-large",
+                         "at most 16 megapixels of 64 million cells; give bbox or width", "width");
   }
   Rules rules;
   rules.style = choice.style;
@@ -61,6 +64,8 @@ ApiAnswer get_image(const ApiRequest& request, ServerState& state) {
 
 }  // namespace
 
-std::vector<Route> image_routes() { return {{Method::get, "/api/v1/maps/{}/image.png", Role::view, get_image}}; }
+std::vector<Route> image_routes() {
+  return {{Method::get, "/api/v1/maps/{}/image.png", Role::view, get_image}};
+}
 
 }  // namespace flogmap

@@ -11,9 +11,12 @@ using Json = nlohmann::ordered_json;
 
 std::string_view name_of(Operators operators) {
   switch (operators) {
-    case Operators::minmax: return "minmax";
-    case Operators::lukasiewicz: return "lukasiewicz";
-    case Operators::algebraic: break;
+    case Operators::minmax:
+      return "minmax";
+    case Operators::lukasiewicz:
+      return "lukasiewicz";
+    case Operators::algebraic:
+      break;
   }
   return "algebraic";
 }

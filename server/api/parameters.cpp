@@ -47,7 +47,8 @@ std::optional<double> optional_number(const ApiRequest& request, std::string_vie
   return value ? std::optional(parse_number(*value, name)) : std::nullopt;
 }
 
-std::int64_t parse_integer(std::string_view text, std::string_view name, std::int64_t least, std::int64_t most) {
+std::int64_t parse_integer(std::string_view text, std::string_view name, std::int64_t least,
+                           std::int64_t most) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || value < least || value > most) {
@@ -112,7 +113,12 @@ PictureChoice picture_choice(const ApiRequest& request, std::optional<int> layer
 
 std::string make_etag(std::string_view epoch, std::uint64_t revision, std::string_view representation) {
   std::string tag = "\"";
-  tag.append(epoch).append("-").append(std::to_string(revision)).append("-").append(representation).append("\"");
+  tag.append(epoch)
+      .append("-")
+      .append(std::to_string(revision))
+      .append("-")
+      .append(representation)
+      .append("\"");
   return tag;
 }
 

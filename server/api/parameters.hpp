@@ -16,7 +16,8 @@ namespace flogmap {
 /// An impossible request; carries the response to it.
 class RefusedRequest : public std::runtime_error {
  public:
-  RefusedRequest(int status, std::string_view code, const std::string& detail, std::string_view parameter = {})
+  RefusedRequest(int status, std::string_view code, const std::string& detail,
+                 std::string_view parameter = {})
       : std::runtime_error(detail), response_(problem(status, code, detail, parameter)) {}
   [[nodiscard]] const ApiResponse& response() const { return response_; }
 
@@ -31,7 +32,8 @@ double required_number(const ApiRequest& request, std::string_view name);
 std::optional<double> optional_number(const ApiRequest& request, std::string_view name);
 std::int64_t integer_parameter(const ApiRequest& request, std::string_view name, std::int64_t fallback,
                                std::int64_t least, std::int64_t most);
-std::int64_t parse_integer(std::string_view text, std::string_view name, std::int64_t least, std::int64_t most);
+std::int64_t parse_integer(std::string_view text, std::string_view name, std::int64_t least,
+                           std::int64_t most);
 double parse_number(std::string_view text, std::string_view name);
 
 /// "x_min,y_min,x_max,y_max" metres.

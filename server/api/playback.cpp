@@ -13,9 +13,9 @@ constexpr double kFastest = 100;
 
 ApiResponse playback_response(ServerState& state) {
   const PlaybackState playback = state.control.playback();
-  const Json json = {{"seekable", playback.seekable}, {"position_s", playback.position_s},
+  const Json json = {{"seekable", playback.seekable},     {"position_s", playback.position_s},
                      {"duration_s", playback.duration_s}, {"rate", playback.rate},
-                     {"paused", playback.paused}, {"loop", playback.loop}};
+                     {"paused", playback.paused},         {"loop", playback.loop}};
   return json_response(json.dump());
 }
 
@@ -26,9 +26,10 @@ std::optional<double> number_field(const nlohmann::json& body, const char* name,
   const auto& field = body[name];
   const double value = field.is_number() ? field.get<double>() : NAN;
   if (value >= least && value <= most) return value;
-  throw RefusedRequest(422, "bad-value",
-                       std::string(name) + " must be a number from " + std::to_string(least) + " to " +
-                           std::to_string(most), name);
+  throw RefusedRequest(
+      422, "bad-value",
+      std::string(name) + " must be a number from " + std::to_string(least) + " to " + std::to_string(most),
+      name);
 }
 
 PlaybackChange requested_change(const nlohmann::json& body) {
@@ -41,7 +42,8 @@ PlaybackChange requested_change(const nlohmann::json& body) {
   change.position_s = number_field(body, "position_s", 0, 1e9);
   change.rate = number_field(body, "rate", 0, kFastest);
   if (body.contains("paused")) {
-    if (!body["paused"].is_boolean()) throw RefusedRequest(422, "bad-value", "paused must be true or false", "paused");
+    if (!body["paused"].is_boolean())
+      throw RefusedRequest(422, "bad-value", "paused must be true or false", "paused");
     change.paused = body["paused"].get<bool>();
   }
   return change;

@@ -15,10 +15,14 @@ std::string_view next_segment(std::string_view& rest) {
 
 std::string_view name_of(Method method) {
   switch (method) {
-    case Method::get: return "GET, HEAD";
-    case Method::post: return "POST";
-    case Method::patch: return "PATCH";
-    default: return "";
+    case Method::get:
+      return "GET, HEAD";
+    case Method::post:
+      return "POST";
+    case Method::patch:
+      return "PATCH";
+    default:
+      return "";
   }
 }
 

@@ -10,8 +10,8 @@
 
 namespace flogmap {
 
-/// Makes the response to a request; pure but for what it asks of `state`. Runs on the network thread: what takes
-/// longer than a few milliseconds is returned as a job on immutable data.
+/// Makes the response to a request; pure but for what it asks of `state`. Runs on the network thread: what
+/// takes longer than a few milliseconds is returned as a job on immutable data.
 using Handler = ApiAnswer (*)(const ApiRequest& request, ServerState& state);
 
 struct Route {

@@ -9,7 +9,8 @@ namespace flogmap {
 
 nlohmann::ordered_json tile_json(TileBoard& board, Slot slot, std::optional<int> layer) {
   const TileKey key = board.key(slot);
-  nlohmann::ordered_json json = {{"level", key.level}, {"x", key.x}, {"y", key.y}, {"rev", board.revision(slot)}};
+  nlohmann::ordered_json json = {
+      {"level", key.level}, {"x", key.x}, {"y", key.y}, {"rev", board.revision(slot)}};
   json["layers"] = nlohmann::ordered_json::array();
   for (int k = 0; k < board.info().grid.num_layers(); ++k) {
     if (layer && *layer != k) continue;
@@ -36,8 +37,12 @@ TileFormat requested_format(const ApiRequest& request) {
     throw RefusedRequest(400, "bad-parameter", "f must be png, pb or json", "f");
   }
   const auto type = negotiate(request.accept, {"image/png", "application/x-protobuf", "application/json"});
-  if (!type) throw RefusedRequest(406, "not-acceptable", "offered: image/png, application/x-protobuf, application/json");
-  return *type == "image/png" ? TileFormat::png : *type == "application/json" ? TileFormat::json : TileFormat::protobuf;
+  if (!type)
+    throw RefusedRequest(406, "not-acceptable",
+                         "offered: image/png, application/x-protobuf, application/json");
+  return *type == "image/png"          ? TileFormat::png
+         : *type == "application/json" ? TileFormat::json
+                                       : TileFormat::protobuf;
 }
 
 TileKey requested_key(const ApiRequest& request) {

@@ -24,16 +24,20 @@ std::string to_json(const ServedMap& map, std::size_t from, Entries entries) {
                       {"state", name_of(entry.state)},
                       {"mapped", entry.mapped}});
   }
-  return Json{{"epoch", map.epoch()}, {"from", from}, {"total", map.trajectory().size()}, {"points", points}}.dump();
+  return Json{{"epoch", map.epoch()}, {"from", from}, {"total", map.trajectory().size()}, {"points", points}}
+      .dump();
 }
 
 std::string requested_format(const ApiRequest& request) {
   if (const auto format = request.parameter("format")) {
-    if (*format == "json" || *format == "pb" || *format == "tum" || *format == "kitti") return std::string(*format);
+    if (*format == "json" || *format == "pb" || *format == "tum" || *format == "kitti")
+      return std::string(*format);
     throw RefusedRequest(400, "bad-parameter", "format must be json, pb, tum or kitti", "format");
   }
   const auto type = negotiate(request.accept, {"application/json", "application/x-protobuf", "text/plain"});
-  if (!type) throw RefusedRequest(406, "not-acceptable", "offered: application/json, application/x-protobuf, text/plain");
+  if (!type)
+    throw RefusedRequest(406, "not-acceptable",
+                         "offered: application/json, application/x-protobuf, text/plain");
   return *type == "application/json" ? "json" : *type == "text/plain" ? "tum" : "pb";
 }
 

@@ -28,16 +28,15 @@ std::string complaint_of(const ServeOptions& options) {
   return "";
 }
 
-TEST(Access, WithoutTokensEverybodyHasControl) {
-  EXPECT_EQ(Access({}).role_of("", "", kNow), Role::control);
-}
+TEST(Access, WithoutTokensEverybodyHasControl) { EXPECT_EQ(Access({}).role_of("", "", kNow), Role::control); }
 
 TEST(Access, WithTokensOnlyTheyCount) {
   const Access access(with_tokens());
   EXPECT_EQ(access.role_of("", "", kNow), Role::none);
   EXPECT_EQ(access.role_of("Bearer view-secret", "", kNow), Role::view);
   EXPECT_EQ(access.role_of("Bearer control-secret", "", kNow), Role::control);
-  for (const char* wrong : {"Bearer ", "Bearer view-secre", "Bearer view-secrett", "view-secret", "Basic view-secret"}) {
+  for (const char* wrong :
+       {"Bearer ", "Bearer view-secre", "Bearer view-secrett", "view-secret", "Basic view-secret"}) {
     EXPECT_EQ(access.role_of(wrong, "", kNow), Role::none) << wrong;
   }
 }
@@ -80,8 +79,8 @@ TEST(Access, OnlyOwnNamesAreAnsweredTo) {
                            "robot.local", "robot.local:99", "maps.example:8443"}) {
     EXPECT_TRUE(access.host_allowed(host, "192.168.4.1")) << host;
   }
-  for (const char* host : {"", "evil.example", "localhost.evil.example", "192.168.4.2", "127.0.0.1.evil.example:80",
-                           "maps.example:1", "["}) {
+  for (const char* host : {"", "evil.example", "localhost.evil.example", "192.168.4.2",
+                           "127.0.0.1.evil.example:80", "maps.example:1", "["}) {
     EXPECT_FALSE(access.host_allowed(host, "192.168.4.1")) << host;
   }
 }
@@ -141,7 +140,8 @@ TEST(Tokens, AFileSaysWhichLineIsWrong) {
     }
     return "";
   };
-  EXPECT_THAT(complaint("view view-secret\nadmin some-secret\n"), HasSubstr(":2: role must be view or control"));
+  EXPECT_THAT(complaint("view view-secret\nadmin some-secret\n"),
+              HasSubstr(":2: role must be view or control"));
   EXPECT_THAT(complaint("view short\n"), HasSubstr(":1: a token needs at least 8"));
   EXPECT_THAT(complaint("# nothing\n"), HasSubstr("holds no token"));
 }

@@ -65,7 +65,8 @@ class FakeSession : public SessionControl {
   }
 
   mutable std::mutex mutex_;
-  PlaybackState playback_{.seekable = true, .position_s = 0, .duration_s = 60, .rate = 1, .paused = false, .loop = true};
+  PlaybackState playback_{
+      .seekable = true, .position_s = 0, .duration_s = 60, .rate = 1, .paused = false, .loop = true};
   int num_resets_ = 0;
   int num_steps_ = 0;
 };

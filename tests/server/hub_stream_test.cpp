@@ -44,7 +44,9 @@ class StreamTest : public ::testing::Test {
     for (int i = 0; i < 200; ++i) {
       const HttpReply reply = http(server_.port(), "GET", "/api/v1/maps/live");
       const bool there = reply.body.find(truth_->epoch()) != std::string::npos;
-      if (there && reply.body.find("\"rev\":" + std::to_string(truth_->revision()) + ",") != std::string::npos) return;
+      if (there &&
+          reply.body.find("\"rev\":" + std::to_string(truth_->revision()) + ",") != std::string::npos)
+        return;
       std::this_thread::sleep_for(5ms);
     }
     FAIL() << "the hub does not take in what is published";
@@ -53,7 +55,8 @@ class StreamTest : public ::testing::Test {
   /// Reads and acknowledges until the mirror holds what the map holds.
   void follow(StreamClient& client, TileMirror& mirror) {
     const auto deadline = std::chrono::steady_clock::now() + 20s;
-    while (difference(mirror, *truth_, kEvidence.tiles) != "" && std::chrono::steady_clock::now() < deadline) {
+    while (difference(mirror, *truth_, kEvidence.tiles) != "" &&
+           std::chrono::steady_clock::now() < deadline) {
       const auto message = client.read(1s);
       if (!message) continue;
       mirror.take(*message);
@@ -172,8 +175,9 @@ TEST_F(StreamTest, PosesPicturesCellsAndPongsArrive) {
       EXPECT_EQ(parsed.image_frame().full_width(), 752U);
     }
     EXPECT_EQ(parsed.has_pong() ? parsed.pong().nonce() : 4711U, 4711U);
-    const std::set<int> wanted{v1::ServerMessage::kWelcome,  v1::ServerMessage::kPose,     v1::ServerMessage::kFeatures,
-                               v1::ServerMessage::kCellColumn, v1::ServerMessage::kPong,   v1::ServerMessage::kStatus};
+    const std::set<int> wanted{v1::ServerMessage::kWelcome,  v1::ServerMessage::kPose,
+                               v1::ServerMessage::kFeatures, v1::ServerMessage::kCellColumn,
+                               v1::ServerMessage::kPong,     v1::ServerMessage::kStatus};
     if (picture && parsed.image_frame().stream() == v1::IMAGE_STREAM_DISPARITY) kinds.insert(1000);
     if (wanted.count(parsed.message_case()) > 0) kinds.insert(parsed.message_case());
   }

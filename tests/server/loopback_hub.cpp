@@ -37,8 +37,8 @@ LoopbackHub::~LoopbackHub() {
   if (thread_.joinable()) thread_.join();
 }
 
-HttpReply http(std::uint16_t port, const std::string& method, const std::string& target, const HttpHeaders& headers,
-               const std::string& body) {
+HttpReply http(std::uint16_t port, const std::string& method, const std::string& target,
+               const HttpHeaders& headers, const std::string& body) {
   net::io_context io;
   beast::tcp_stream stream(io);
   stream.connect(endpoint_of(port));

@@ -13,7 +13,7 @@ flogmap_target(tile_mirror SOURCES tile_mirror.cpp PUBLIC board PRIVATE proto)
 flogmap_test(outbox_tests SOURCES outbox_law_test.cpp LINK tile_mirror board proto)
 
 flogmap_target(loopback_hub SOURCES loopback_hub.cpp PUBLIC hub PRIVATE network_libraries)
-flogmap_test(hub_tests SOURCES hub_http_test.cpp hub_stream_test.cpp
+flogmap_test(hub_tests SOURCES hub_access_test.cpp hub_http_test.cpp hub_stream_test.cpp
              LINK loopback_hub client_frames synthetic_walk tile_mirror hub proto nlohmann_json::nlohmann_json)
 
 flogmap_target(client_frames SOURCES client_frames.cpp PUBLIC wire PRIVATE proto)

@@ -1,5 +1,6 @@
-// Rule 5: after any sequence of updates, stalls, disconnects and resumes, once quiet, the client's tiles are the
-// server's, byte for byte; and on the way nothing grows. Thousands of seeded schedules against the real parts.
+// Rule 5: after any sequence of updates, stalls, disconnects and resumes, once quiet, the client's tiles are
+// the server's, byte for byte; and on the way nothing grows. Thousands of seeded schedules against the real
+// parts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +15,8 @@
 namespace flogmap {
 namespace {
 
-constexpr WireLimits kSmall{.max_unacknowledged_bytes = 4096, .max_batch_bytes = 1024, .max_client_frame_bytes = 65536};
+constexpr WireLimits kSmall{
+    .max_unacknowledged_bytes = 4096, .max_batch_bytes = 1024, .max_client_frame_bytes = 65536};
 
 /// One page, one connection at a time, over a line that holds back messages, and the map that it looks at.
 class Schedule {
@@ -27,16 +29,33 @@ class Schedule {
 
   void act() {
     switch (pick(14)) {
-      case 0: case 1: case 2: case 3: return publish();
-      case 4: case 5: return deliver(pick(4));
-      case 6: return acknowledge();
-      case 7: return look();
-      case 8: return forget();
-      case 9: if (chance(0.4)) connect(); return;
-      case 10: if (chance(0.15)) begin_map(); return;
-      case 11: return walk();
-      case 12: if (chance(0.3)) resubscribe(); return;
-      default: now_ += std::chrono::milliseconds(pick(250));
+      case 0:
+      case 1:
+      case 2:
+      case 3:
+        return publish();
+      case 4:
+      case 5:
+        return deliver(pick(4));
+      case 6:
+        return acknowledge();
+      case 7:
+        return look();
+      case 8:
+        return forget();
+      case 9:
+        if (chance(0.4)) connect();
+        return;
+      case 10:
+        if (chance(0.15)) begin_map();
+        return;
+      case 11:
+        return walk();
+      case 12:
+        if (chance(0.3)) resubscribe();
+        return;
+      default:
+        now_ += std::chrono::milliseconds(pick(250));
     }
     serve(pick(3));
   }
@@ -165,7 +184,8 @@ class Schedule {
   void check_bounds(const Bytes& message) {
     EXPECT_LE(outbox_->num_pending(), map_->board().num_slots());
     EXPECT_LE(outbox_->memory_bytes(), 64 * 1024);
-    EXPECT_LE(outbox_->unacknowledged(), kSmall.max_unacknowledged_bytes + 12 * 1024);  // one tile may be larger
+    EXPECT_LE(outbox_->unacknowledged(),
+              kSmall.max_unacknowledged_bytes + 12 * 1024);  // one tile may be larger
     EXPECT_LE(message ? message->size() : 0, kSmall.max_batch_bytes + 12 * 1024);
   }
 

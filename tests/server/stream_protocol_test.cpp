@@ -17,7 +17,8 @@ using namespace std::chrono_literals;
 class ProtocolTest : public ::testing::Test {
  protected:
   ProtocolTest() : state_({}, session_, {}) {
-    state_.live = std::make_unique<ServedMap>("live", walk_.begin("0000000000000001", "started"), Operators::algebraic);
+    state_.live =
+        std::make_unique<ServedMap>("live", walk_.begin("0000000000000001", "started"), Operators::algebraic);
     for (int i = 0; i < 60; ++i) {
       const auto tiles = walk_.step();
       state_.live->update(walk_.revision(), tiles);
@@ -25,7 +26,9 @@ class ProtocolTest : public ::testing::Test {
   }
 
   int code(const std::optional<StreamClose>& close) { return close ? close->code : 0; }
-  Bytes next(StreamProtocol& protocol, StreamProtocol::Time now) { return protocol.outbox().next(*state_.live, now); }
+  Bytes next(StreamProtocol& protocol, StreamProtocol::Time now) {
+    return protocol.outbox().next(*state_.live, now);
+  }
 
   const StreamProtocol::Time start_{1h};
   FakeSession session_;
@@ -78,17 +81,15 @@ TEST_F(ProtocolTest, OneWhoAsksButDoesNotReadIsClosed) {
 }
 
 TEST_F(ProtocolTest, APoseNeverWaitsBehindMoreThanOneBatch) {
-  StreamProtocol protocol(state_, Role::view, start_);
-  protocol.receive(hello_frame(), start_);
-  protocol.receive(subscribe_frame({{{}, Planes::evidence}, {}, 20, false}), start_);
+  Outbox outbox(WireLimits{1U << 20U, 1, 65536});  // one tile a batch: a long snapshot
+  outbox.subscribe({{{}, Planes::evidence}, {}, 20, false}, *state_.live);
   TileMirror mirror;
-  while (const Bytes message = next(protocol, start_)) {
-    if (mirror.take(*message) == TileMirror::Effect::tiles) break;  // in the middle of the snapshot
-  }
+  while (mirror.tiles().size() < 2) mirror.take(*outbox.next(*state_.live, start_));
+  ASSERT_GT(outbox.num_pending(), 0U);
   const Bytes pose = to_shared(encode_pose(walk_.tracking(), 0));
-  protocol.outbox().image(ImageStream::left, to_shared("a picture"));
-  protocol.outbox().pose(pose);
-  EXPECT_EQ(next(protocol, start_ + 1ms), pose);
+  outbox.image(ImageStream::left, to_shared("a picture"));
+  outbox.pose(pose);
+  EXPECT_EQ(outbox.next(*state_.live, start_ + 1ms), pose);
 }
 
 TEST_F(ProtocolTest, ChangesComeAtNoMoreThanTenHertz) {

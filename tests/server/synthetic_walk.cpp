@@ -128,7 +128,8 @@ TrackingReport SyntheticWalk::tracking() {
   world_from_camera << s, 0, c, -c, 0, s, 0, -1, 0;
   SE3 pose = SE3::Identity();
   pose.linear() = world_from_camera;
-  pose.translation() = Eigen::Vector3d(at.x_m, at.y_m, 1.2 + 0.03 * std::sin(0.4 * static_cast<double>(num_steps_)));
+  pose.translation() =
+      Eigen::Vector3d(at.x_m, at.y_m, 1.2 + 0.03 * std::sin(0.4 * static_cast<double>(num_steps_)));
   const bool weak = num_steps_ % 400 > 385;
   report.world_from_camera = pose;
   report.tracking.state = weak ? TrackingState::weak : TrackingState::ok;
@@ -137,7 +138,8 @@ TrackingReport SyntheticWalk::tracking() {
   std::uniform_real_distribution<float> x_px(0, 751), y_px(0, 479), d_px(-4, 4);
   for (int i = 0; i < 60; ++i) {
     const Eigen::Vector2f current(x_px(random_), y_px(random_));
-    report.tracking.matches.push_back({Eigen::Vector2f(current.x() + d_px(random_), current.y()), current, 20, i % 5 != 0});
+    report.tracking.matches.push_back(
+        {Eigen::Vector2f(current.x() + d_px(random_), current.y()), current, 20, i % 5 != 0});
   }
   report.mapped = num_steps_ % 4 == 1;
   report.latency_ms = 18;
@@ -173,7 +175,11 @@ StatusReport SyntheticWalk::status() const {
   status.frames_per_s = 20;
   status.frames = status.tracked = num_steps_;
   status.mapped_views = revision_;
-  status.stages = {{"read", 1.1, 2.0}, {"rectify", 3.2, 4.1}, {"disparity", 12.5, 16.0}, {"odometry", 8.4, 13.1}, {"map", 9.9, 15.2}};
+  status.stages = {{"read", 1.1, 2.0},
+                   {"rectify", 3.2, 4.1},
+                   {"disparity", 12.5, 16.0},
+                   {"odometry", 8.4, 13.1},
+                   {"map", 9.9, 15.2}};
   status.alignment = "given";
   if (num_steps_ % 400 > 300) status.warnings = {"too dark: open the aperture or add light"};
   return status;

@@ -9,8 +9,8 @@
 
 namespace flogmap {
 
-/// A camera that walks an ellipse in a made-up house of 12 x 8 m: a map that grows behind it, poses, pictures and
-/// reports, without any vision. Everything follows from the step number and the seed.
+/// A camera that walks an ellipse in a made-up house of 12 x 8 m: a map that grows behind it, poses, pictures
+/// and reports, without any vision. Everything follows from the step number and the seed.
 class SyntheticWalk {
  public:
   static constexpr int kStepsPerRound = 1200;  // 60 s at 20 steps a second

@@ -24,7 +24,8 @@ MapInfo two_layers() {
 
 Cell random_cell(std::mt19937& random) {
   std::uniform_int_distribution<int> evidence(0, 65535), rays(0, 80);
-  const int E = evidence(random), O = std::uniform_int_distribution<int>(0, 65535 - E)(random), N = rays(random);
+  const int E = evidence(random), O = std::uniform_int_distribution<int>(0, 65535 - E)(random),
+            N = rays(random);
   if (N == 0) return {};
   return {static_cast<std::uint16_t>(E), static_cast<std::uint16_t>(O), static_cast<std::uint16_t>(N),
           static_cast<std::uint16_t>(evidence(random))};
@@ -48,7 +49,8 @@ TEST(Planes, DeflatingAndInflatingGivesThemBack) {
 TEST(Planes, BytesAreTheRoundedValues) {
   std::mt19937 random(2);
   const auto tile = random_tile(random, 1);
-  const PlaneBytes planes = evidence_planes(*tile, 0, kN_K), M = value_plane(*tile, 0, kN_K, Operators::algebraic);
+  const PlaneBytes planes = evidence_planes(*tile, 0, kN_K),
+                   M = value_plane(*tile, 0, kN_K, Operators::algebraic);
   for (int i = 0; i < kTileColumns; ++i) {
     const Cell& cell = tile->cells[i];
     const float K = confidence(cell, kN_K);
@@ -66,7 +68,8 @@ TEST(Overview, NeitherPlanningNorMotionHidesADanger) {
   constexpr float kSurelyDanger = 0.75F;
   constexpr float kStep = 2.0F / 65535;
   for (int trial = 0; trial < 20000; ++trial) {
-    const std::array<Cell, 4> cells{random_cell(random), random_cell(random), random_cell(random), random_cell(random)};
+    const std::array<Cell, 4> cells{random_cell(random), random_cell(random), random_cell(random),
+                                    random_cell(random)};
     const Cell over = overview_cell(cells, kN_K);
     const float E = mu_E(over), O = mu_O(over), K = confidence(over, kN_K);
     EXPECT_LE(E + O, 1 + kStep);
@@ -84,7 +87,8 @@ TEST(Overview, NeitherPlanningNorMotionHidesADanger) {
 
 TEST(Overview, AnUnseenQuarterMakesTheCellNotFree) {
   const Cell free{65535, 0, 80, 0};
-  EXPECT_EQ(overview_cell({free, free, free, free}, kN_K), (Cell{65535, 0, static_cast<std::uint16_t>(kN_K), 0}));
+  EXPECT_EQ(overview_cell({free, free, free, free}, kN_K),
+            (Cell{65535, 0, static_cast<std::uint16_t>(kN_K), 0}));
   EXPECT_EQ(overview_cell({free, free, free, Cell{}}, kN_K).empty, 0);
   EXPECT_EQ(overview_cell({}, kN_K), Cell{});
 }

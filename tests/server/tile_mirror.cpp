@@ -18,7 +18,8 @@ std::string text(TileKey key) {
 
 TileMirror::Effect TileMirror::take(std::string_view bytes) {
   v1::ServerMessage message;
-  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) throw std::runtime_error("no ServerMessage");
+  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())))
+    throw std::runtime_error("no ServerMessage");
   switch (message.message_case()) {
     case v1::ServerMessage::kWelcome:
       if (epoch_.empty()) epoch_ = message.welcome().map().epoch();
@@ -30,7 +31,8 @@ TileMirror::Effect TileMirror::take(std::string_view bytes) {
       complete_revision_ = 0;
       epoch_ = message.reset().map().epoch();
       return Effect::reset;
-    case v1::ServerMessage::kSnapshotBegin: return Effect::snapshot_begin;
+    case v1::ServerMessage::kSnapshotBegin:
+      return Effect::snapshot_begin;
     case v1::ServerMessage::kSnapshotEnd:
       complete_revision_ = std::max(complete_revision_, message.snapshot_end().rev());
       return Effect::snapshot_end;
@@ -39,13 +41,19 @@ TileMirror::Effect TileMirror::take(std::string_view bytes) {
       for (const auto& point : message.trajectory_rewrite().points()) path_ns_.push_back(point.time_ns());
       return Effect::other;
     case v1::ServerMessage::kTrajectoryAppend:
-      if (message.trajectory_append().first() != path_ns_.size()) throw std::runtime_error("a gap in the path");
+      if (message.trajectory_append().first() != path_ns_.size())
+        throw std::runtime_error("a gap in the path");
       for (const auto& point : message.trajectory_append().points()) path_ns_.push_back(point.time_ns());
       return Effect::other;
-    case v1::ServerMessage::kImageFrame: batch_bytes_ += bytes.size(); return Effect::other;
-    case v1::ServerMessage::kGoodbye: return Effect::goodbye;
-    case v1::ServerMessage::kTileBatch: break;
-    default: return Effect::other;
+    case v1::ServerMessage::kImageFrame:
+      batch_bytes_ += bytes.size();
+      return Effect::other;
+    case v1::ServerMessage::kGoodbye:
+      return Effect::goodbye;
+    case v1::ServerMessage::kTileBatch:
+      break;
+    default:
+      return Effect::other;
   }
   batch_bytes_ += bytes.size();
   for (const auto& tile : message.tile_batch().tiles()) {

@@ -34,7 +34,8 @@ std::string inflated(const std::string& deflated, std::size_t size) {
 TEST(WireGolden, FilesSayWhatTheirJsonSays) {
   for (const WireSample& sample : all_samples()) {
     const WireSample kept{sample.name, file(sample.name + ".bin"), sample.has_tiles};
-    EXPECT_EQ(nlohmann::json::parse(to_json(kept)), nlohmann::json::parse(file(sample.name + ".json"))) << sample.name;
+    EXPECT_EQ(nlohmann::json::parse(to_json(kept)), nlohmann::json::parse(file(sample.name + ".json")))
+        << sample.name;
   }
 }
 
@@ -78,7 +79,9 @@ TEST(WireGolden, TodaysTilesMeanTheSame) {
 }
 
 TEST(WireGolden, ClientMessagesAreUnderstood) {
-  const auto decoded = [](const std::string& name) { return decode_client_message(file("client_" + name + ".bin")); };
+  const auto decoded = [](const std::string& name) {
+    return decode_client_message(file("client_" + name + ".bin"));
+  };
   const auto hello = std::get<Hello>(decoded("hello").value());
   EXPECT_EQ(hello.versions, std::vector<std::uint32_t>{1});
   EXPECT_EQ(hello.resume.value().epoch, "0123456789abcdef");

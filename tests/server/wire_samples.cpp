@@ -82,7 +82,8 @@ StatusReport sample_status() {
 
 CellColumn sample_column() {
   CellColumn column{1.01, -2.03, "0123456789abcdef", 4700, {}};
-  column.layers = {{0, 0.25, 0.5, 0.75, 90, 0.4375, 0.375, 0.625, 0.375, 0.125}, {1, 0, 0, 0, 0, 0, 0, 1, 0, 0}};
+  column.layers = {{0, 0.25, 0.5, 0.75, 90, 0.4375, 0.375, 0.625, 0.375, 0.125},
+                   {1, 0, 0, 0, 0, 0, 0, 1, 0, 0}};
   return column;
 }
 
@@ -92,9 +93,11 @@ std::string sample_batch(Planes planes) {
   std::vector<Bytes> layers;
   for (int layer = 0; layer < 2; ++layer) {
     const bool evidence = planes == Planes::evidence;
-    const std::string data = deflate_planes(bytes_of(evidence ? sample_evidence(layer) : sample_value(layer)));
+    const std::string data =
+        deflate_planes(bytes_of(evidence ? sample_evidence(layer) : sample_value(layer)));
     // The change plane stands in layer 0 alone: nothing changed lately in layer 1.
-    const std::string change = evidence && layer == 0 ? deflate_planes(bytes_of(sample_change())) : std::string();
+    const std::string change =
+        evidence && layer == 0 ? deflate_planes(bytes_of(sample_change())) : std::string();
     layers.push_back(to_shared(encode_layer_planes(layer, planes, data, change)));
   }
   const Bytes near = to_shared(encode_tile({0, -3, 5}, 4700, layers));
@@ -171,7 +174,8 @@ std::string sample_value(int layer) {
 }
 
 std::vector<WireSample> server_samples() {
-  PlaybackState playback{.seekable = true, .position_s = 12.5, .duration_s = 182, .rate = 2, .paused = true, .loop = true};
+  PlaybackState playback{
+      .seekable = true, .position_s = 12.5, .duration_s = 182, .rate = 2, .paused = true, .loop = true};
   const auto path = sample_trajectory();
   ServingStatus serving{SessionState::paused, 321, 31'555'584, 3};
   TrackingReport lost;
@@ -209,9 +213,13 @@ std::vector<WireSample> client_samples() {
   inspect.mutable_inspect_cell()->set_x(1.01);
   inspect.mutable_inspect_cell()->set_y(-2.03);
   ping.mutable_ping()->set_nonce(77);
-  return {client("hello", sample_hello()), client("subscribe", sample_subscribe()),
-          client("viewport", sample_viewport()), client("ack", ack), client("forget", forget),
-          client("inspect_cell", inspect), client("ping", ping)};
+  return {client("hello", sample_hello()),
+          client("subscribe", sample_subscribe()),
+          client("viewport", sample_viewport()),
+          client("ack", ack),
+          client("forget", forget),
+          client("inspect_cell", inspect),
+          client("ping", ping)};
 }
 
 std::string to_json(const WireSample& sample) {
@@ -223,7 +231,8 @@ std::string to_json(const WireSample& sample) {
   google::protobuf::util::JsonPrintOptions options;
   options.add_whitespace = true;
   std::string json;
-  if (!google::protobuf::util::MessageToJsonString(message, &json, options).ok()) throw std::runtime_error(sample.name);
+  if (!google::protobuf::util::MessageToJsonString(message, &json, options).ok())
+    throw std::runtime_error(sample.name);
   return json;
 }
 

@@ -7,7 +7,7 @@ namespace flogmap {
 
 /// A message of the stream with every field set to something that gives itself away if it is mixed up.
 struct WireSample {
-  std::string name;    // "server_pose": file name without extension; starts with server_ or client_
+  std::string name;  // "server_pose": file name without extension; starts with server_ or client_
   std::string bytes;
   bool has_tiles = false;  // holds deflated planes: another library may deflate them to other bytes
 };
