@@ -74,7 +74,7 @@ function layerBlock(operators: Operators, e: LayerEvidence): HTMLElement {
   const bars = ([['E', 'Empty', E], ['O', 'Occupied', O], ['K', 'Confidence', K]] as const).map(([letter, name, value]) => bar(letter, name, value));
   const values = ([
     ['M', 'map value', mapValue(operators, E, O, K)], ['Mp', 'safe for planning', planningValue(operators, O, K)],
-    ['Mm', 'safe for motion', motionValue(operators, E, O, K)], ['⚡', 'conflict', conflictValue(E, O, K)], ['Δ', 'changed lately', e.C],
+    ['Mm', 'safe for motion', motionValue(operators, E, O, K)], ['Cf', 'conflict', conflictValue(E, O, K)], ['Δ', 'changed lately', e.C],
   ] as const).map(([letter, name, value]) => h('span', { title: name }, h('b', {}, letter), ` ${value.toFixed(2)}`));
   return h('div', { class: 'cell-layer', 'data-layer': e.layer.id },
     h('div', { class: 'cell-layer-head' }, h('span', {}, layerName(e.layer)), h('span', { class: 'rays' }, e.rays === undefined ? 'N …' : `N ${e.rays}`)),
