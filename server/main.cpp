@@ -21,6 +21,9 @@ constexpr Command kCommands[] = {
     {"disparity", "dense disparity of one pair of pictures", flogmap::add_disparity},
     {"evaluate", "compare a trajectory or a map with the truth", flogmap::add_evaluate},
     {"export", "write a stored map in another format", flogmap::add_export},
+    {"merge", "make one map of two", flogmap::add_merge},
+    {"simulate", "render a recording with exact ground truth", flogmap::add_simulate},
+    {"record", "write what a source delivers as a recording", flogmap::add_record},
 };
 
 int complain(const std::string& message, int exit_code) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 namespace flogmap {
 namespace {
@@ -90,6 +91,40 @@ void add_grid_options(OptionTable& table, Options& options) {
                                "fan: fast; ray: one ray after the other, the reference");
   table.flag("paper-mode", flog.paper_mode,
              "literally as in the paper: no floor of the error, eq. (5) as printed");
+}
+
+/// Words separated by commas.
+Option list_option(const std::string& name, std::vector<std::string>& target, const std::string& value_name,
+                   const std::string& help) {
+  const auto parse = [&target](const std::string& given) {
+    target.clear();
+    std::stringstream words(given);
+    for (std::string word; std::getline(words, word, ',');) {
+      if (!word.empty()) target.push_back(word);
+    }
+  };
+  const auto show = [&target] {
+    std::string text;
+    for (const std::string& word : target) text += (text.empty() ? "" : ",") + word;
+    return text;
+  };
+  return {.name = name, .value_name = value_name, .help = help, .parse = parse, .show = show};
+}
+
+/// Who may reach the server.
+void add_access_options(OptionTable& table, Options& options) {
+  ServeOptions& serve = options.serve;
+  table.text("tokens", "FILE", options.tokens_file,
+             "lines \"view SECRET\" and \"control SECRET\"; or FLOGMAP_VIEW_TOKEN, FLOGMAP_CONTROL_TOKEN");
+  table.flag("insecure-no-auth", serve.insecure_no_auth, "serve other machines without a token");
+  table.add(list_option("allow-host", serve.allow_hosts, "NAME,...",
+                        "names by which browsers may reach this server"));
+  table.add(
+      list_option("allow-origin", serve.allow_origins, "ORIGIN,...", "pages elsewhere that may use it"));
+  table.text("tls-cert", "FILE", serve.tls_cert, "PEM certificate chain; with --tls-key serves https");
+  table.text("tls-key", "FILE", serve.tls_key, "PEM private key");
+  table.integer("max-connections", "N", serve.max_connections, 1, 65535, "at a time");
+  table.integer("max-connections-per-address", "N", serve.max_connections_per_address, 1, 65535, "at a time");
 }
 
 void add_start_options(OptionTable& table, Options& options) {
@@ -185,9 +220,8 @@ void add_serve_options(OptionTable& table, Options& options) {
   table.number("robot-radius", "METRES", serve.robot.radius_m, 0, 10, "of routes and the inflated maps");
   table.number("robot-height", "METRES", serve.robot.height_m, 0, 100,
                "layers above it do not matter; 0 = all do");
-  table.integer("max-connections", "N", serve.max_connections, 1, 65535, "at a time");
-  table.integer("max-connections-per-address", "N", serve.max_connections_per_address, 1, 65535, "at a time");
-  table.flag("insecure-no-auth", serve.insecure_no_auth, "serve other machines without a token");
+  table.text("maps", "DIR", options.maps_dir, "serve every *.flog in it beside the live map");
+  add_access_options(table, options);
 }
 
 std::vector<std::string> all_option_names() {

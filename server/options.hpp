@@ -24,6 +24,7 @@ struct Options {
   std::optional<SE3> first_pose;             // world_from_<poses_frame>
   bool as_fast_as_possible = false;          // --pace fast
   bool loop_closure = true;
+  std::string tokens_file;  // serve: who may view, who may control
   std::string store;     // serve: the map's file
   std::string maps_dir;  // serve: stored maps beside the live one
   std::string out_dir;   // map: where the files go

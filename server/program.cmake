@@ -8,19 +8,21 @@ flogmap_target(options SOURCES option_table.cpp options.cpp
 flogmap_target(pipeline SOURCES capture_control.cpp stage_statistics.cpp pipeline.cpp
                PUBLIC front_end flog camera Threads::Threads)
 
-
 flogmap_target(flogmap EXECUTABLE
   SOURCES
     main.cpp
     commands/disparity.cpp
     commands/evaluate.cpp
+    commands/evaluate_map.cpp
     commands/export.cpp
     commands/interrupt_watcher.cpp
     commands/map.cpp
     commands/mapping_session.cpp
+    commands/merge.cpp
     commands/progress_bar.cpp
+    commands/record.cpp
     commands/serve.cpp
+    commands/simulate.cpp
   PRIVATE options pipeline hub map_store map_export trajectory CLI11::CLI11 nlohmann_json::nlohmann_json)
 target_compile_definitions(flogmap PRIVATE FLOGMAP_VERSION="${PROJECT_VERSION}")
 set_target_properties(flogmap PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
-

@@ -19,5 +19,8 @@ RunCommand add_map(CLI::App& app);
 RunCommand add_disparity(CLI::App& app);
 RunCommand add_evaluate(CLI::App& app);
 RunCommand add_export(CLI::App& app);
+RunCommand add_simulate(CLI::App& app);
+RunCommand add_record(CLI::App& app);
+RunCommand add_merge(CLI::App& app);
 
 }  // namespace flogmap

@@ -1,6 +1,5 @@
 // flogmap disparity: one pair of pictures in, the disparity of the left one out.
 #include <CLI/CLI.hpp>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +10,7 @@
 
 #include "camera/calibration/detect.hpp"
 #include "camera/picture_files.hpp"
+#include "camera/recording_writer.hpp"
 #include "camera/rectifier.hpp"
 #include "mapping/stereo/disparity_matcher.hpp"
 #include "mapping/stereo/segment_filter.hpp"
@@ -52,22 +52,16 @@ StereoCalibration calibration_for(const DisparityArguments& arguments, const Pic
   return calibration;
 }
 
-/// Portable float map of one channel: rows from the bottom up, +inf where there is no match.
-void write_pfm(const std::string& file, const Image<float>& disparity) {
-  static_assert(std::endian::native == std::endian::little);
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << "Pf\n" << disparity.width << ' ' << disparity.height << "\n-1.0\n";
-  std::vector<float> row(static_cast<std::size_t>(disparity.width));
-  for (int y = disparity.height - 1; y >= 0; --y) {
-    for (int x = 0; x < disparity.width; ++x) {
-      const float d = disparity.at(x, y);
-      row[static_cast<std::size_t>(x)] = std::isnan(d) ? std::numeric_limits<float>::infinity() : d;
-    }
-    out.write(reinterpret_cast<const char*>(row.data()),
-              static_cast<std::streamsize>(row.size() * sizeof(float)));
+/// Portable float map: +inf where there is no match.
+void write_disparity(const std::string& file, Image<float> disparity) {
+  for (float& d : disparity.pixels) {
+    if (std::isnan(d)) d = std::numeric_limits<float>::infinity();
   }
-  out.close();
-  if (!out) throw UsageError("--out " + file + ": cannot be written");
+  try {
+    write_pfm(file, disparity);
+  } catch (const std::exception& error) {
+    throw UsageError(std::string("--out: ") + error.what());
+  }
 }
 
 /// The disparity in colours, as the page shows it.
@@ -113,7 +107,7 @@ int compute(DisparityArguments arguments) {
   remove_small_segments(disparity, min_segment_px(arguments.stereo, rectifier.camera()));
   const double ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  write_pfm(arguments.out, disparity.px);
+  write_disparity(arguments.out, disparity.px);
   const std::string png = beside(arguments.out);
   write_picture_of(disparity, png);
   std::printf("%dx%d, density %.1f %%, %.1f ms; written: %s, %s\n", disparity.px.width, disparity.px.height,

@@ -1,4 +1,4 @@
-// flogmap evaluate: an estimated path against the true one.
+// flogmap evaluate: an estimated path against the true one, or a map against the truth.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -7,6 +7,7 @@
 
 #include "mapping/odometry/trajectory_error.hpp"
 #include "server/commands/commands.hpp"
+#include "server/commands/evaluate_map.hpp"
 #include "server/option_table.hpp"
 
 namespace flogmap {
@@ -15,6 +16,9 @@ namespace {
 struct EvaluateArguments {
   std::string trajectory;
   std::string ground_truth;
+  std::string map;
+  std::string truth;
+  int tolerance_cells = 2;
   bool json = false;
 };
 
@@ -62,6 +66,12 @@ void print_json(const TrajectoryError& error) {
 }
 
 int evaluate(const EvaluateArguments& arguments) {
+  if (!arguments.map.empty()) {
+    if (arguments.truth.empty())
+      throw UsageError("--truth is missing: a folder with layer_<k>.png and .json");
+    evaluate_map(arguments.map, arguments.truth, arguments.tolerance_cells, arguments.json);
+    return 0;
+  }
   const Trajectory estimate = read_input("--trajectory", arguments.trajectory);
   const Trajectory truth = read_input("--ground-truth", arguments.ground_truth);
   const TrajectoryError error = compare(estimate, truth);
@@ -81,8 +91,17 @@ RunCommand add_evaluate(CLI::App& app) {
       ->type_name("FILE");
   app.add_option("--ground-truth", arguments->ground_truth, "true path: TUM, EuRoC csv or KITTI poses")
       ->type_name("FILE");
+  app.add_option("--map", arguments->map, "instead: a stored map")->type_name("map.flog");
+  app.add_option("--truth", arguments->truth,
+                 "true occupancy: layer_<k>.png and .json, seen_<k>.png if known")
+      ->type_name("DIR");
+  app.add_option("--tolerance", arguments->tolerance_cells, "a surface may be so many cells off")
+      ->check(CLI::Range(0, 100))
+      ->type_name("CELLS [2]");
   app.add_flag("--json", arguments->json, "print one JSON object instead of a table");
-  app.footer("Example: flogmap evaluate --trajectory /tmp/map/trajectory.tum --ground-truth groundtruth.tum");
+  app.footer(
+      "Examples: flogmap evaluate --trajectory /tmp/map/trajectory.tum --ground-truth groundtruth.tum\n"
+      "          flogmap evaluate --map /tmp/map/map.flog --truth truth");
   return [arguments] { return evaluate(*arguments); };
 }
 

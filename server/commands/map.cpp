@@ -140,12 +140,12 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   const StatusReport status = pipeline.status();
   const nlohmann::json document = statistics(status, map, wall_s);
   write_text(std::filesystem::path(options.out_dir) / "stats.json", document.dump(2));
-  std::printf(
-      "%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %.1f frames/s; level by %s\n",
-      static_cast<unsigned long long>(status.frames), static_cast<unsigned long long>(status.tracked),
-      static_cast<unsigned long long>(status.lost), static_cast<unsigned long long>(status.skipped_frames),
-      static_cast<unsigned long long>(status.mapped_views), document["fps"].get<double>(),
-      collector.alignment().c_str());
+  std::printf("%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %.1f frames/s; %s\n",
+              static_cast<unsigned long long>(status.frames), static_cast<unsigned long long>(status.tracked),
+              static_cast<unsigned long long>(status.lost),
+              static_cast<unsigned long long>(status.skipped_frames),
+              static_cast<unsigned long long>(status.mapped_views), document["fps"].get<double>(),
+              collector.alignment().c_str());
   for (const std::string& warning : status.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("written to %s: map.flog, fused.png, path.png, layer_*.png, ros/, trajectory.tum, stats.json\n",
               options.out_dir.c_str());

@@ -102,12 +102,24 @@ MapBegin begin_of(const StoredMap& map, const std::string& reason) {
           .trajectory = map.trajectory};
 }
 
+/// Every *.flog of a folder, by the name of its file.
+void add_stored_maps(Hub& hub, const std::string& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() != ".flog") continue;
+    hub.add_stored_map(entry.path().stem().string(), begin_of(load_map(entry.path()), "stored"));
+  }
+  if (error) throw UsageError("--maps " + folder + ": " + error.message());
+}
+
 int serve_stored(const Options& options, const HubInfo& info) {
   const StoredMap map = load_map(options.store);
   StoredControl control(options.store);
   HubInfo with_calibration = info;
   with_calibration.calibration_json = map.calibration_json;
   Hub hub(options.serve, control, with_calibration);
+  add_stored_maps(hub, options.maps_dir);
   hub.begin(begin_of(map, "stored"));
   hub.drain_on_signals();
   announce(options, hub, "Serving the stored map " + options.store);
@@ -123,6 +135,16 @@ void outrank_what_viewers_know(StoredMap& map) {
   for (TileUpdate& update : map.tiles) {
     update.tile = std::make_shared<const Tile>(Tile{update.tile->cells, map.revision});
     update.revision = map.revision;
+  }
+}
+
+/// Tokens, addresses and limits, or why they cannot be.
+void settle_access(Options& options) {
+  try {
+    options.serve.tokens = read_tokens(options.tokens_file);
+    check(options.serve);
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
   }
 }
 
@@ -166,6 +188,7 @@ int serve_source(const Options& options, HubInfo info) {
   Pipeline pipeline(pipeline_options, std::move(session.source), std::move(session.front_end),
                     std::move(session.integrator), observer);
   Hub hub(options.serve, pipeline.control(), info);
+  add_stored_maps(hub, options.maps_dir);
   observer.connect(&hub, store.get());
   hub.drain_on_signals();
   std::exception_ptr failure;
@@ -213,6 +236,7 @@ RunCommand add_serve(CLI::App& app) {
     if (options.source.spec.empty() && options.store.empty()) {
       throw UsageError("say what to serve: --source SPEC to map, --store FILE for a stored map, or both");
     }
+    settle_access(options);
     if (options.serve.web_root.empty()) options.serve.web_root = find_web_root();
     HubInfo info;
     info.config_json = state->table.effective().dump();
