@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
@@ -23,7 +24,8 @@ namespace flogmap {
 namespace {
 
 struct Arguments {
-  std::string json, markdown;
+  std::string json = "build/bench/stereo.json";
+  std::string markdown;
   int rounds = 5;
 };
 
@@ -130,6 +132,8 @@ std::string json(const std::vector<Result>& results) {
 
 void write(const std::string& file, const std::string& text) {
   if (file.empty()) return;
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder);
   std::ofstream out(file);
   out << text;
   if (!out.flush()) throw std::runtime_error(file + ": cannot be written");

@@ -25,7 +25,9 @@ Picture read(const fs::path& file) {
 /// A pair that is rectified already, as the program would take it.
 RectifiedFrame rectified(const Picture& left, const Picture& right, std::int64_t timestamp_ns = 0) {
   StereoCalibration calibration;
-  calibration.left = {.width_px = left.width, .height_px = left.height, .fx_px = 1, .fy_px = 1};
+  calibration.left.width_px = left.width;
+  calibration.left.height_px = left.height;
+  calibration.left.fx_px = calibration.left.fy_px = 1;
   calibration.right = calibration.left;
   calibration.right_from_left.translation().x() = -1;
   calibration.rectified = true;

@@ -11,12 +11,12 @@
 namespace flogmap {
 
 struct BenchPair {
-  std::string name;
-  RectifiedFrame frame;
+  std::string name{};
+  RectifiedFrame frame{};
   int num_disparities = 0;
-  StereoCamera camera;          // focal_px = 0: unknown
-  Image<float> truth;           // disparity of the left picture, NaN unknown; empty: none
-  Image<std::uint8_t> visible;  // 1 where the right picture sees the point too
+  StereoCamera camera{};          // focal_px = 0: unknown
+  Image<float> truth{};           // disparity of the left picture, NaN unknown; empty: none
+  Image<std::uint8_t> visible{};  // 1 where the right picture sees the point too
 };
 
 /// Middlebury (2001, 2003), the rendered views with depth, and one frame each of EuRoC MH_01 (752x480) and
