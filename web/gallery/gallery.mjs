@@ -25,8 +25,9 @@ function startProgram() {
 
 async function openPage(browser, url, size, scheme, hash = '') {
   const page = await browser.newPage({ viewport: size, colorScheme: scheme, deviceScaleFactor: size.width < 500 ? 2 : 1 });
+  page.setDefaultTimeout(180_000); // drawn without a graphics card, perhaps beside a compiler
   await page.goto(`${url}/?fresh${hash}`);
-  await page.locator('.chip', { hasText: /Live|Lagging/ }).waitFor({ timeout: 60_000 });
+  await page.locator('.chip', { hasText: /Live|Lagging/ }).waitFor();
   return page;
 }
 
@@ -36,7 +37,7 @@ async function film(browser, url) {
   await page.keyboard.press('[');
   const frames = [];
   for (let i = 0; i < FRAMES; ++i) {
-    frames.push(await page.screenshot());
+    frames.push(await page.screenshot({ timeout: 180_000 }));
     await page.waitForTimeout((1000 * MAPPED_S) / FRAMES);
   }
   await page.close();
@@ -74,7 +75,7 @@ try {
     const page = await openPage(browser, url, size, scheme, hash);
     await act?.(page);
     await page.waitForTimeout(2500);
-    await page.screenshot({ path: path.join(folder, `${name}.png`), timeout: 90_000 });
+    await page.screenshot({ path: path.join(folder, `${name}.png`), timeout: 180_000 });
     await page.close();
     console.log(`${folder}/${name}.png`);
   }

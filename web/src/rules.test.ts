@@ -1,5 +1,6 @@
+import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
-import { classify, conflictValue, mapValue, motionValue, planningValue, seenFromConfidence, STYLES, styleValue } from './rules';
+import { classify, conflictValue, mapValue, motionValue, planningValue, seenFromConfidence, STYLES, styleValue, type Operators } from './rules';
 
 // E, O, K, then M by minmax, algebraic, lukasiewicz: the table of FLOG.md section 5.
 const TABLE: [string, number, number, number, number, number, number][] = [
@@ -18,6 +19,24 @@ describe('map value', () => {
     expect(mapValue('minmax', E, O, K)).toBeCloseTo(minmax, 6);
     expect(mapValue('algebraic', E, O, K)).toBeCloseTo(algebraic, 6);
     expect(mapValue('lukasiewicz', E, O, K)).toBeCloseTo(lukasiewicz, 6);
+  });
+});
+
+interface Golden {
+  operators: Operators; E: number; O: number; K: number; M: number; M_p: number; M_m: number; conflict: number;
+}
+
+describe('golden values', () => {
+  const golden = JSON.parse(readFileSync(new URL('../../tests/golden/map_values.json', import.meta.url), 'utf8')) as Golden[];
+  it('are the same here and in the program', () => {
+    expect(golden.length).toBeGreaterThan(100);
+    for (const { operators, E, O, K, M, M_p, M_m, conflict } of golden) {
+      const where = `${operators} E ${E} O ${O} K ${K}`;
+      expect(Math.abs(mapValue(operators, E, O, K) - M), `M, ${where}`).toBeLessThan(1e-5);
+      expect(Math.abs(planningValue(operators, O, K) - M_p), `M_p, ${where}`).toBeLessThan(1e-5);
+      expect(Math.abs(motionValue(operators, E, O, K) - M_m), `M_m, ${where}`).toBeLessThan(1e-5);
+      expect(Math.abs(conflictValue(E, O, K) - conflict), `conflict, ${where}`).toBeLessThan(1e-5);
+    }
   });
 });
 
