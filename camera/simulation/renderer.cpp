@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "camera/simulation/lighting.hpp"
+#include "camera/simulation/simd.hpp"
 #include "camera/simulation/texture_sampler.hpp"
 
 namespace flogmap {
@@ -19,6 +20,7 @@ constexpr std::array<std::array<double, 2>, 4> kSamples{
     {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}}};
 
 /// Keeps the nearer of what is there and the face, for one row.
+FLOGMAP_PICTURE_CLONES
 void draw_row(float inverse_depth, float per_x, std::int32_t index, int first, int last,
               float* __restrict depths, std::int32_t* __restrict visible) {
   for (int x = first; x < last; ++x) {
@@ -30,6 +32,7 @@ void draw_row(float inverse_depth, float per_x, std::int32_t index, int first, i
 }
 
 /// Greys of up to kChunkPx neighbouring pixels of one face.
+FLOGMAP_PICTURE_CLONES
 void shade_chunk(const ScreenFace& face, const MipTexture& texture, int y, int first, int last,
                  std::uint8_t* out) {
   const TextureSampler sampler(texture, footprint_texels(face, 0.5 * (first + last - 1), y));
@@ -151,12 +154,28 @@ std::uint8_t Renderer::outline_grey(int x, int y, std::uint8_t otherwise) const 
   const std::int32_t here = visible_.at(x, y);
   if (std::all_of(nearest.begin(), nearest.end(), [&](std::int32_t k) { return k == here; }))
     return otherwise;
+  return mean_grey(x, y, nearest);
+}
+
+std::uint8_t Renderer::mean_grey(int x, int y, std::span<const std::int32_t> nearest) const {
   std::int32_t sum = 0;
-  for (std::size_t i = 0; i < kSamples.size(); ++i) {
-    sum += grey_at(nearest[i], x + kSamples[i][0], y + kSamples[i][1]);
+  std::optional<TextureSampler> sampler;  // of the face before: neighbouring samples mostly share it
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    const std::int32_t k = nearest[i];
+    if (k < 0) {
+      sum += kNothingGrey * 256;
+      continue;
+    }
+    const ScreenFace& face = screen_[k];
+    const double sx = x + kSamples[i][0], sy = y + kSamples[i][1];
+    if (!sampler || nearest[i - 1] != k)
+      sampler.emplace(textures_[face.face], footprint_texels(face, sx, sy));
+    const double depth = 1 / face.inverse_depth(sx, sy);
+    const std::array u{static_cast<float>(face.u_over_depth(sx, sy) * depth - face.u_origin)};
+    const std::array v{static_cast<float>(face.v_over_depth(sx, sy) * depth - face.v_origin)};
+    sum += (*sampler)(u, v)[0];
   }
-  constexpr auto kCount = static_cast<std::int32_t>(kSamples.size());
-  return static_cast<std::uint8_t>((sum / kCount + 128) >> 8);
+  return static_cast<std::uint8_t>((sum / static_cast<std::int32_t>(nearest.size()) + 128) >> 8);
 }
 
 std::int32_t Renderer::nearest_at(double x, double y, std::span<const std::int32_t> candidates) const {
@@ -167,16 +186,6 @@ std::int32_t Renderer::nearest_at(double x, double y, std::span<const std::int32
     if (w > nearest_w && screen_[k].contains(x, y)) nearest = k, nearest_w = w;
   }
   return nearest;
-}
-
-std::int32_t Renderer::grey_at(std::int32_t k, double x, double y) const {
-  if (k < 0) return kNothingGrey * 256;
-  const ScreenFace& face = screen_[k];
-  const double depth = 1 / face.inverse_depth(x, y);
-  const TextureSampler sampler(textures_[face.face], footprint_texels(face, x, y));
-  const std::array u{static_cast<float>(face.u_over_depth(x, y) * depth - face.u_origin)};
-  const std::array v{static_cast<float>(face.v_over_depth(x, y) * depth - face.v_origin)};
-  return sampler(u, v)[0];
 }
 
 void Renderer::smooth_outlines(RenderedView& view) const {

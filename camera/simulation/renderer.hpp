@@ -42,7 +42,7 @@ class Renderer {
   [[nodiscard]] bool is_outline(int x, int y) const;
   [[nodiscard]] std::uint8_t outline_grey(int x, int y, std::uint8_t otherwise) const;
   [[nodiscard]] std::int32_t nearest_at(double x, double y, std::span<const std::int32_t> candidates) const;
-  [[nodiscard]] std::int32_t grey_at(std::int32_t k, double x, double y) const;
+  [[nodiscard]] std::uint8_t mean_grey(int x, int y, std::span<const std::int32_t> nearest) const;
 
   Scene scene_;
   std::vector<Face> faces_;
