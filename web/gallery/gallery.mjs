@@ -51,16 +51,16 @@ const SHOTS = [
   ['large', { width: 1920, height: 1080 }, 'dark', ''],
   ['paper-grey', DESKTOP, 'light', '#p=grey'],
   ['motion', DESKTOP, 'dark', '#s=motion&p=viridis'],
-  ['classes', DESKTOP, 'dark', '', async (page) => { await page.getByText('Three classes only').click(); }],
-  ['heights', DESKTOP, 'dark', '', async (page) => { await page.getByText('Colour by height').click(); }],
-  ['solid', DESKTOP, 'dark', '', async (page) => { await page.getByText('Colour by height').click(); await page.locator('.map > canvas').focus(); await page.keyboard.press('v'); }],
+  ['classes', DESKTOP, 'dark', '', async (page) => { await page.getByRole('switch', { name: 'Three classes only' }).click(); }],
+  ['heights', DESKTOP, 'dark', '', async (page) => { await page.getByRole('switch', { name: 'Colour by height' }).click(); }],
+  ['solid', DESKTOP, 'dark', '', async (page) => { await page.getByRole('switch', { name: 'Colour by height' }).click(); await page.locator('.map > canvas').focus(); await page.keyboard.press('v'); }],
   ['spread', DESKTOP, 'light', '', async (page) => {
-    await page.getByText('Colour by height').click();
+    await page.getByRole('switch', { name: 'Colour by height' }).click();
     await page.locator('.map > canvas').focus();
     await page.keyboard.press('v');
     await page.getByLabel('Spread layers').fill('1');
   }],
-  ['cell', DESKTOP, 'dark', '', async (page) => { await page.locator('.map > canvas').click({ position: { x: 330, y: 250 } }); await page.getByText('Camera', { exact: true }).click(); }],
+  ['cell', DESKTOP, 'dark', '', async (page) => { await page.locator('.map > canvas').click({ position: { x: 330, y: 250 } }); await page.locator('summary', { hasText: 'Camera' }).click(); }],
   ['status', DESKTOP, 'dark', '', async (page) => { for (const title of ['Camera', 'Cell']) await page.locator('summary', { hasText: title }).click(); await page.waitForTimeout(8000); }],
   ['phone', { width: 390, height: 844 }, 'dark', ''],
   ['phone-layers', { width: 390, height: 844 }, 'light', '', async (page) => { await page.locator('.tabs button').first().click(); }],
