@@ -11,7 +11,7 @@ namespace flogmap {
 namespace {
 
 constexpr int kConfirmWithinViews = 5;
-constexpr double kSamePlace_m = 0.1;    // two meetings say the same if their corrections differ less
+constexpr double kSamePlace_m = 0.1;  // two meetings say the same if their corrections differ less
 constexpr double kSameTurn_rad = 0.035;
 
 double angle_of(const SE3& motion) { return Eigen::AngleAxisd(motion.linear()).angle(); }
@@ -46,7 +46,8 @@ double largest_move_m(const std::vector<SE3>& before, const std::vector<SE3>& af
 
 }  // namespace
 
-LoopCloser::LoopCloser(const LoopOptions& options, const StereoCamera& camera) : options_(options), camera_(camera) {}
+LoopCloser::LoopCloser(const LoopOptions& options, const StereoCamera& camera)
+    : options_(options), camera_(camera) {}
 
 void LoopCloser::remember(const View& view, int segment) {
   FrameFeatures features = extract_features(camera_, view.left, view.disparity, options_.corners);
@@ -95,7 +96,8 @@ std::optional<LoopCorrection> LoopCloser::add(const View& view, int segment) {
   return std::nullopt;
 }
 
-/// The same test as between frames: a consistent set of matches under any motion, then all matches that fit it.
+/// The same test as between frames: a consistent set of matches under any motion, then all matches that fit
+/// it.
 std::optional<LoopCloser::Meeting> LoopCloser::meet(int earlier_view) const {
   const Remembered &earlier = views_[earlier_view], &now = views_.back();
   const auto match =
@@ -111,13 +113,14 @@ std::optional<LoopCloser::Meeting> LoopCloser::meet(int earlier_view) const {
   }
   const auto motion = refine_motion(camera_, points, match->current_from_key, options_.motion);
   if (!motion || motion->num_inliers < options_.min_inliers) return std::nullopt;
-  return Meeting{static_cast<int>(views_.size()) - 1, earlier_view, motion->current_from_key, motion->covariance,
-                 motion->num_inliers};
+  return Meeting{static_cast<int>(views_.size()) - 1, earlier_view, motion->current_from_key,
+                 motion->covariance, motion->num_inliers};
 }
 
 /// The loop's own certainty, and whether odometry can have been that far off.
 bool LoopCloser::plausible(const Meeting& meeting) const {
-  if (meeting.covariance.diagonal().head<3>().sum() > options_.max_sigma_m * options_.max_sigma_m) return false;
+  if (meeting.covariance.diagonal().head<3>().sum() > options_.max_sigma_m * options_.max_sigma_m)
+    return false;
   const Remembered &earlier = views_[meeting.earlier_view], &now = views_[meeting.view];
   const SE3 by_odometry = corrected_[meeting.earlier_view].inverse() * corrected_[meeting.view];
   const SE3 gap = meeting.earlier_from_view.inverse() * by_odometry;
@@ -126,7 +129,8 @@ bool LoopCloser::plausible(const Meeting& meeting) const {
   double radians = 0.1 + options_.drift_rad_per_m * path_m;
   for (int i = meeting.earlier_view + 1; i <= meeting.view; ++i) {
     if (views_[i].segment == views_[i - 1].segment) continue;
-    metres += options_.speed_m_s * static_cast<double>(views_[i].timestamp_ns - views_[i - 1].timestamp_ns) * 1e-9;
+    metres +=
+        options_.speed_m_s * static_cast<double>(views_[i].timestamp_ns - views_[i - 1].timestamp_ns) * 1e-9;
     radians = std::numbers::pi;
   }
   return gap.translation().norm() <= metres && angle_of(gap) <= radians;
@@ -134,7 +138,8 @@ bool LoopCloser::plausible(const Meeting& meeting) const {
 
 /// What this meeting would do to the pose of its view, in the world.
 SE3 LoopCloser::implied_correction(const Meeting& meeting) const {
-  return corrected_[meeting.earlier_view] * meeting.earlier_from_view * views_[meeting.view].world_from_camera.inverse();
+  return corrected_[meeting.earlier_view] * meeting.earlier_from_view *
+         views_[meeting.view].world_from_camera.inverse();
 }
 
 bool LoopCloser::confirmed(const Meeting& meeting) const {
@@ -145,7 +150,8 @@ bool LoopCloser::confirmed(const Meeting& meeting) const {
 }
 
 std::optional<LoopCorrection> LoopCloser::close(const Meeting& meeting) {
-  edges_.push_back({meeting.earlier_view, meeting.view, meeting.earlier_from_view, with_floor(meeting.covariance), true});
+  edges_.push_back(
+      {meeting.earlier_view, meeting.view, meeting.earlier_from_view, with_floor(meeting.covariance), true});
   pending_.reset();
   ++num_loops_;
   auto start = corrected_;
@@ -155,8 +161,8 @@ std::optional<LoopCorrection> LoopCloser::close(const Meeting& meeting) {
   auto corrected = optimise_poses(std::move(start), edges_, options_.graph);
   if (largest_move_m(corrected_, corrected) < options_.least_change_m) return std::nullopt;
   corrected_ = std::move(corrected);
-  return LoopCorrection{corrected_, corrected_.back() * views_.back().world_from_camera.inverse(), meeting.view,
-                        meeting.earlier_view, meeting.num_inliers};
+  return LoopCorrection{corrected_, corrected_.back() * views_.back().world_from_camera.inverse(),
+                        meeting.view, meeting.earlier_view, meeting.num_inliers};
 }
 
 }  // namespace flogmap

@@ -30,16 +30,17 @@ struct LoopOptions {
   double drift_share = 0.03;  // odometry is off by at most this share of the path, and
   double drift_m = 0.15;      // this much: a loop that says more is false
   double drift_rad_per_m = 0.02;
-  double speed_m_s = 1.5;     // and while it was lost, the camera may have moved as fast as this
+  double speed_m_s = 1.5;        // and while it was lost, the camera may have moved as fast as this
   double least_change_m = 0.01;  // smaller corrections are kept for the next loop: no map is rebuilt for them
 };
 
 /// The views' poses once a loop is closed.
 struct LoopCorrection {
   std::vector<SE3> world_from_camera;  // of every view added so far, in order
-  SE3 map_from_odometry = SE3::Identity();  // takes the uncorrected poses of later frames into the corrected map
-  int view = 0;                        // the newest,
-  int earlier_view = 0;                // the one that it meets again
+  SE3 map_from_odometry =
+      SE3::Identity();   // takes the uncorrected poses of later frames into the corrected map
+  int view = 0;          // the newest,
+  int earlier_view = 0;  // the one that it meets again
   int num_inliers = 0;
 };
 
@@ -49,8 +50,8 @@ class LoopCloser {
   LoopCloser(const LoopOptions& options, const StereoCamera& camera);
 
   /// `view.world_from_camera` as odometry (and the level start) have it, uncorrected. `segment` changes when
-  /// odometry went on after a loss without knowing where (Tracking::segment). The corrected poses if this view
-  /// closes a loop that moves any view by `least_change_m` or more, else nothing.
+  /// odometry went on after a loss without knowing where (Tracking::segment). The corrected poses if this
+  /// view closes a loop that moves any view by `least_change_m` or more, else nothing.
   [[nodiscard]] std::optional<LoopCorrection> add(const View& view, int segment = 0);
 
   /// Closed so far, those that moved hardly anything included.
@@ -60,8 +61,8 @@ class LoopCloser {
   struct Remembered {
     std::int64_t timestamp_ns = 0;
     int segment = 0;
-    SE3 world_from_camera;  // uncorrected
-    double path_m = 0;      // walked until here
+    SE3 world_from_camera;                // uncorrected
+    double path_m = 0;                    // walked until here
     std::vector<Eigen::Vector3d> points;  // corners, metres, camera frame
     std::vector<Descriptor> patches;      // what they look like, in their own orientation and size
   };

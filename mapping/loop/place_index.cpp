@@ -88,7 +88,8 @@ void PlaceIndex::vote(const BinaryPatch& patch, int num_views, std::vector<int>&
 std::vector<PlaceCandidate> PlaceIndex::query(const std::vector<BinaryPatch>& patches, int num_views,
                                               int max_candidates) const {
   std::vector<int> votes(views_.size(), 0), last_voter(views_.size(), -1);
-  for (std::size_t i = 0; i < patches.size(); ++i) vote(patches[i], num_views, last_voter, static_cast<int>(i), votes);
+  for (std::size_t i = 0; i < patches.size(); ++i)
+    vote(patches[i], num_views, last_voter, static_cast<int>(i), votes);
   std::vector<PlaceCandidate> candidates;
   for (int view = 0; view < std::min(num_views, this->num_views()); ++view) {
     if (votes[view] > 0) candidates.push_back({view, votes[view]});

@@ -25,8 +25,8 @@ struct PlaceCandidate {
   int votes = 0;
 };
 
-/// Remembers the patches of views. Every patch stands in several hash tables, by some of its bits each, so that
-/// a question meets only the few patches that are likely to be alike.
+/// Remembers the patches of views. Every patch stands in several hash tables, by some of its bits each, so
+/// that a question meets only the few patches that are likely to be alike.
 class PlaceIndex {
  public:
   PlaceIndex();
@@ -34,7 +34,8 @@ class PlaceIndex {
   /// Views are numbered 0, 1, 2 ... as they are added.
   void add(const std::vector<BinaryPatch>& patches);
 
-  /// The `max_candidates` views with most votes among the first `num_views`, most votes first; ties: the older.
+  /// The `max_candidates` views with most votes among the first `num_views`, most votes first; ties: the
+  /// older.
   [[nodiscard]] std::vector<PlaceCandidate> query(const std::vector<BinaryPatch>& patches, int num_views,
                                                   int max_candidates) const;
 
@@ -51,7 +52,8 @@ class PlaceIndex {
   using Table = std::unordered_map<std::uint32_t, std::vector<Entry>>;
 
   [[nodiscard]] std::uint32_t key(int table, const BinaryPatch& patch) const;
-  void vote(const BinaryPatch& patch, int num_views, std::vector<int>& last_voter, int voter, std::vector<int>& votes) const;
+  void vote(const BinaryPatch& patch, int num_views, std::vector<int>& last_voter, int voter,
+            std::vector<int>& votes) const;
 
   std::array<std::array<std::uint8_t, kKeyBits>, kNumTables> key_bits_;
   std::array<Table, kNumTables> tables_;

@@ -18,8 +18,8 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return m;
 }
 
-/// How a left perturbation of the source frame looks from the target frame: for small_motion(x), translation and
-/// rotation vector apart.
+/// How a left perturbation of the source frame looks from the target frame: for small_motion(x), translation
+/// and rotation vector apart.
 Covariance6 adjoint(const SE3& target_from_source) {
   Covariance6 A = Covariance6::Zero();
   const Eigen::Matrix3d R = target_from_source.linear();
@@ -51,7 +51,8 @@ class NormalEquations {
  public:
   explicit NormalEquations(int num_poses) : size_(6 * (num_poses - 1)), b_(Eigen::VectorXd::Zero(size_)) {}
 
-  /// Poses move by a left perturbation in their own camera: world_from_pose <- world_from_pose small_motion(x).
+  /// Poses move by a left perturbation in their own camera: world_from_pose <- world_from_pose
+  /// small_motion(x).
   void add(const PoseEdge& edge, const std::vector<SE3>& poses, double robust_sigmas) {
     const Vector6 error = error_of(edge, poses);
     const Covariance6 information = edge.covariance.ldlt().solve(Covariance6::Identity());
@@ -77,7 +78,8 @@ class NormalEquations {
   void add_block(int row, int column, const Covariance6& block) {
     if (row == 0 || column == 0) return;  // pose 0 is fixed
     for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 6; ++j) triplets_.emplace_back(6 * (row - 1) + i, 6 * (column - 1) + j, block(i, j));
+      for (int j = 0; j < 6; ++j)
+        triplets_.emplace_back(6 * (row - 1) + i, 6 * (column - 1) + j, block(i, j));
     }
   }
 

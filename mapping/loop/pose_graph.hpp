@@ -21,10 +21,11 @@ struct PoseGraphOptions {
   double robust_sigmas = 3;  // of edges that may be wrong
 };
 
-/// The poses with the least sum of squared errors, in standard deviations; Gauss-Newton with a sparse Cholesky
-/// factorisation. `world_from_pose` is where it starts; pose 0 stays where it is. Every pose must be connected
-/// with pose 0 by edges.
-[[nodiscard]] std::vector<SE3> optimise_poses(std::vector<SE3> world_from_pose, const std::vector<PoseEdge>& edges,
+/// The poses with the least sum of squared errors, in standard deviations; Gauss-Newton with a sparse
+/// Cholesky factorisation. `world_from_pose` is where it starts; pose 0 stays where it is. Every pose must be
+/// connected with pose 0 by edges.
+[[nodiscard]] std::vector<SE3> optimise_poses(std::vector<SE3> world_from_pose,
+                                              const std::vector<PoseEdge>& edges,
                                               const PoseGraphOptions& options);
 
 }  // namespace flogmap

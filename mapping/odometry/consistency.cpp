@@ -109,7 +109,8 @@ int best_connected(const std::vector<Bits>& graph, const Bits& candidates) {
 
 }  // namespace
 
-double length_sigma(const StereoCamera& camera, const Eigen::Vector3d& P1, const Eigen::Vector3d& P2, double De) {
+double length_sigma(const StereoCamera& camera, const Eigen::Vector3d& P1, const Eigen::Vector3d& P2,
+                    double De) {
   const double k = De / (camera.focal_px * camera.baseline_m);
   const Eigen::Vector3d u = P1 - P2;
   return k / u.norm() * std::sqrt(scaled_length_variance(camera.baseline_m, u, P1, P2));

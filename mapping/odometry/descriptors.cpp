@@ -24,8 +24,8 @@ Image<std::uint8_t> blurred(const Image<std::uint8_t>& image) {
 }
 
 float clamped(const Image<std::uint8_t>& image, float x, float y) {
-  const int u = std::clamp(static_cast<int>(x + 0.5F), 0, image.width - 1);
-  const int v = std::clamp(static_cast<int>(y + 0.5F), 0, image.height - 1);
+  const int u = std::clamp(static_cast<int>(std::floor(x + 0.5F)), 0, image.width - 1);
+  const int v = std::clamp(static_cast<int>(std::floor(y + 0.5F)), 0, image.height - 1);
   return image.at(u, v);
 }
 
@@ -65,15 +65,15 @@ Descriptor normalised(const std::array<float, 64>& samples) {
 
 Descriptor describe_one(const Image<std::uint8_t>& smooth, const Eigen::Vector2f& centre, PatchFrame frame,
                         float scale) {
-  const Eigen::Vector2f x_axis = kSampleStepPx * scale *
-                                 (frame == PatchFrame::upright ? Eigen::Vector2f(1, 0)
-                                                               : own_direction(smooth, centre, scale));
+  const Eigen::Vector2f x_axis =
+      kSampleStepPx * scale *
+      (frame == PatchFrame::upright ? Eigen::Vector2f(1, 0) : own_direction(smooth, centre, scale));
   const Eigen::Vector2f y_axis(-x_axis.y(), x_axis.x());
   std::array<float, 64> samples{};
   for (int v = 0; v < kSamplesPerSide; ++v) {
     for (int u = 0; u < kSamplesPerSide; ++u) {
-      const Eigen::Vector2f at = centre + (static_cast<float>(u) - 3.5F) * x_axis +
-                                 (static_cast<float>(v) - 3.5F) * y_axis;
+      const Eigen::Vector2f at =
+          centre + (static_cast<float>(u) - 3.5F) * x_axis + (static_cast<float>(v) - 3.5F) * y_axis;
       samples[v * kSamplesPerSide + u] = clamped(smooth, at.x(), at.y());
     }
   }
@@ -110,8 +110,8 @@ std::vector<Descriptor> describe(const Image<std::uint8_t>& image, const std::ve
   return descriptors;
 }
 
-std::vector<IndexPair> match_mutually(const std::vector<Descriptor>& key, const std::vector<Descriptor>& current,
-                                      double max_difference) {
+std::vector<IndexPair> match_mutually(const std::vector<Descriptor>& key,
+                                      const std::vector<Descriptor>& current, double max_difference) {
   std::vector<Best> of_key(key.size()), of_current(current.size());
   for (std::size_t i = 0; i < key.size(); ++i) {
     for (std::size_t j = 0; j < current.size(); ++j) {

@@ -30,7 +30,8 @@ struct GradientProducts {
   void add_row(const Image<std::uint8_t>& image, int y, std::int32_t sign) {
     const std::uint8_t *above = image.row(y - 1), *here = image.row(y), *below = image.row(y + 1);
     for (int x = 1; x < image.width - 1; ++x) {
-      const auto gx = static_cast<std::int16_t>(here[x + 1] - here[x - 1]);  // 16 bit: twice as many at a time
+      const auto gx =
+          static_cast<std::int16_t>(here[x + 1] - here[x - 1]);  // 16 bit: twice as many at a time
       const auto gy = static_cast<std::int16_t>(below[x] - above[x]);
       xx[x] += sign * (std::int32_t{gx} * gx);
       xy[x] += sign * (std::int32_t{gx} * gy);
@@ -39,9 +40,10 @@ struct GradientProducts {
   }
 };
 
-/// sums[x]: sum over the kSidePx columns around x, for columns [kRadiusPx, width - kRadiusPx). Sums of 2, 4 and 8
-/// neighbours, one after the other, go many columns at a time; a running sum does not.
-void box_sum(const std::vector<std::int32_t>& values, std::vector<std::int32_t>& scratch, std::vector<float>& sums) {
+/// sums[x]: sum over the kSidePx columns around x, for columns [kRadiusPx, width - kRadiusPx). Sums of 2, 4
+/// and 8 neighbours, one after the other, go many columns at a time; a running sum does not.
+void box_sum(const std::vector<std::int32_t>& values, std::vector<std::int32_t>& scratch,
+             std::vector<float>& sums) {
   static_assert(kSidePx == 9);
   const int n = static_cast<int>(values.size()) - kSidePx + 1;
   const std::int32_t* v = values.data();
@@ -159,7 +161,8 @@ std::vector<Corner> detect_corners(const Image<std::uint8_t>& image, const Corne
   sort_by_cell(candidates, image.width, image.height, options.cell_px);
   std::vector<Corner> corners;
   for (const Candidate& c : candidates) {
-    if (static_cast<int>(corners.size()) >= options.max_corners || c.rank_in_cell >= options.max_per_cell) break;
+    if (static_cast<int>(corners.size()) >= options.max_corners || c.rank_in_cell >= options.max_per_cell)
+      break;
     corners.push_back(refine(strength, c));
   }
   return corners;

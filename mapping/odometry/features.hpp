@@ -12,9 +12,9 @@ namespace flogmap {
 
 struct CornerOptions {
   int max_corners = 500;
-  int cell_px = 40;                // corners are picked cell by cell, so that they cover the picture
+  int cell_px = 40;  // corners are picked cell by cell, so that they cover the picture
   int max_per_cell = 6;
-  float min_strength = 1;          // smaller eigenvalue of the mean gradient products, grey levels^2 per px^2
+  float min_strength = 1;  // smaller eigenvalue of the mean gradient products, grey levels^2 per px^2
 };
 
 /// A corner of the left picture, to a fraction of a pixel.
@@ -27,7 +27,8 @@ struct Corner {
 inline constexpr int kCornerBorderPx = 16;
 
 /// The strongest corners, spread over the picture: first the best of every cell, then the second best, ...
-[[nodiscard]] std::vector<Corner> detect_corners(const Image<std::uint8_t>& image, const CornerOptions& options);
+[[nodiscard]] std::vector<Corner> detect_corners(const Image<std::uint8_t>& image,
+                                                 const CornerOptions& options);
 
 /// A patch around a corner: 8 x 8 samples, their mean taken away and their contrast made equal.
 using Descriptor = std::array<std::uint8_t, 64>;
@@ -38,10 +39,11 @@ enum class PatchFrame {
   own_orientation,  // turned to the patch's own direction: survives any roll
 };
 
-/// Describes corners of the same picture. `scales` enlarges each patch (1 = 8 x 8 samples 2.5 px apart); empty
-/// means 1 for all. Patches are clamped at the picture's border.
-[[nodiscard]] std::vector<Descriptor> describe(const Image<std::uint8_t>& image, const std::vector<Corner>& corners,
-                                               PatchFrame frame, const std::vector<float>& scales = {});
+/// Describes corners of the same picture. `scales` enlarges each patch (1 = 8 x 8 samples 2.5 px apart);
+/// empty means 1 for all. Patches are clamped at the picture's border.
+[[nodiscard]] std::vector<Descriptor> describe(const Image<std::uint8_t>& image,
+                                               const std::vector<Corner>& corners, PatchFrame frame,
+                                               const std::vector<float>& scales = {});
 
 /// A corner of the key frame and one of the current frame that may be the same point.
 struct IndexPair {

@@ -36,7 +36,10 @@ FrameFeatures extract_features(const StereoCamera& camera, const Image<std::uint
   FrameFeatures features;
   for (const Corner& corner : detect_corners(left, options)) {
     const float d = disparity_near(disparity.px, corner.px);
-    if (std::isnan(d)) continue;
+    if (std::isnan(d)) {
+      ++features.num_without_disparity;
+      continue;
+    }
     features.corners.push_back(corner);
     features.disparity_px.push_back(d);
     features.points.push_back(triangulate(camera, corner.px.x(), corner.px.y(), d));
@@ -47,7 +50,8 @@ FrameFeatures extract_features(const StereoCamera& camera, const Image<std::uint
 
 std::vector<float> scales_by_nearness(const FrameFeatures& features, float disparity_of_scale_1) {
   std::vector<float> scales;
-  for (const float d : features.disparity_px) scales.push_back(std::clamp(d / disparity_of_scale_1, 0.4F, 4.0F));
+  for (const float d : features.disparity_px)
+    scales.push_back(std::clamp(d / disparity_of_scale_1, 0.4F, 4.0F));
   return scales;
 }
 

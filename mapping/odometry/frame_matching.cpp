@@ -15,10 +15,12 @@ float median(std::vector<float> values) {
 }
 
 /// The closed form knows distances only; pixels know better. Stays where it started if that fails.
-SE3 refined(const StereoCamera& camera, const std::vector<PointPair>& pairs, const SE3& start, double sigma_px) {
+SE3 refined(const StereoCamera& camera, const std::vector<PointPair>& pairs, const SE3& start,
+            double sigma_px) {
   std::vector<MotionPoint> points;
   for (const PointPair& pair : pairs) {
-    points.push_back({pair.in_key, point_covariance(camera, pair.in_key, sigma_px), project(camera, pair.in_current)});
+    points.push_back(
+        {pair.in_key, point_covariance(camera, pair.in_key, sigma_px), project(camera, pair.in_current)});
   }
   MotionOptions options;
   options.image_sigma_px = sigma_px;
@@ -30,8 +32,9 @@ SE3 refined(const StereoCamera& camera, const std::vector<PointPair>& pairs, con
 }  // namespace
 
 std::optional<FrameMatch> match_points(const StereoCamera& camera, const std::vector<Eigen::Vector3d>& key,
-                                       const std::vector<Eigen::Vector3d>& current, std::vector<IndexPair> pairs,
-                                       int min_consistent, const ConsistencyOptions& consistency) {
+                                       const std::vector<Eigen::Vector3d>& current,
+                                       std::vector<IndexPair> pairs, int min_consistent,
+                                       const ConsistencyOptions& consistency) {
   std::vector<PointPair> points;
   for (const IndexPair& pair : pairs) points.push_back({key[pair.key], current[pair.current]});
   FrameMatch match;
@@ -53,12 +56,14 @@ std::optional<FrameMatch> match_points(const StereoCamera& camera, const std::ve
 
 std::optional<FrameMatch> match_frames(const StereoCamera& camera, const MatchableFrame& key,
                                        const MatchableFrame& current, PatchFrame patches,
-                                       const MatchingOptions& matching, const ConsistencyOptions& consistency) {
+                                       const MatchingOptions& matching,
+                                       const ConsistencyOptions& consistency) {
   const FrameFeatures &from = key.features, &to = current.features;
   if (from.corners.empty() || to.corners.empty()) return std::nullopt;
   if (patches == PatchFrame::upright) {
-    return match_points(camera, from.points, to.points, match_mutually(from.upright, to.upright, matching.max_difference),
-                 matching.min_consistent, consistency);
+    return match_points(camera, from.points, to.points,
+                        match_mutually(from.upright, to.upright, matching.max_difference),
+                        matching.min_consistent, consistency);
   }
   const float d = median(from.disparity_px);
   const auto turned = [d](const MatchableFrame& frame) {
@@ -67,8 +72,9 @@ std::optional<FrameMatch> match_frames(const StereoCamera& camera, const Matchab
   };
   ConsistencyOptions any_turn = consistency;
   any_turn.max_turn_rad.reset();
-  return match_points(camera, from.points, to.points, match_mutually(turned(key), turned(current), matching.max_difference),
-               matching.min_consistent, any_turn);
+  return match_points(camera, from.points, to.points,
+                      match_mutually(turned(key), turned(current), matching.max_difference),
+                      matching.min_consistent, any_turn);
 }
 
 }  // namespace flogmap

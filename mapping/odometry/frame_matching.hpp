@@ -30,13 +30,15 @@ struct FrameMatch {
 
 /// The motion that the largest consistent set of these pairs asks for. `key` and `current`: points in their
 /// camera's frame, metres. Nothing if the set is smaller than `min_consistent` or on a line.
-[[nodiscard]] std::optional<FrameMatch> match_points(const StereoCamera& camera, const std::vector<Eigen::Vector3d>& key,
+[[nodiscard]] std::optional<FrameMatch> match_points(const StereoCamera& camera,
+                                                     const std::vector<Eigen::Vector3d>& key,
                                                      const std::vector<Eigen::Vector3d>& current,
                                                      std::vector<IndexPair> pairs, int min_consistent,
                                                      const ConsistencyOptions& consistency);
 
-/// Matches patches either upright, under the rotation constraint of `consistency`, or in their own orientation and
-/// enlarged by their nearness, under any rotation. Nothing if the consistent set is too small or on a line.
+/// Matches patches either upright, under the rotation constraint of `consistency`, or in their own
+/// orientation and enlarged by their nearness, under any rotation. Nothing if the consistent set is too small
+/// or on a line.
 [[nodiscard]] std::optional<FrameMatch> match_frames(const StereoCamera& camera, const MatchableFrame& key,
                                                      const MatchableFrame& current, PatchFrame patches,
                                                      const MatchingOptions& matching,

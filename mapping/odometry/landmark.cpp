@@ -29,8 +29,9 @@ bool plausible_warp(const Eigen::Matrix2d& warp) {
 
 }  // namespace
 
-Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame, const SE3& odometry_from_camera,
-                       const StereoPixel& pixel, std::int64_t id, double disparity_sigma_px) {
+Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
+                       const SE3& odometry_from_camera, const StereoPixel& pixel, std::int64_t id,
+                       double disparity_sigma_px) {
   const Eigen::Matrix3d J = odometry_from_camera.linear() * triangulate_jacobian(camera, pixel);
   const double xy = kCornerSigma_px * kCornerSigma_px;
   const Eigen::Vector3d noise(xy, xy, disparity_sigma_px * disparity_sigma_px);

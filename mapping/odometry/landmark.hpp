@@ -15,7 +15,7 @@ namespace flogmap {
 
 struct Landmark {
   std::int64_t id = 0;
-  PatchSource patch;                // from the key frame where it was first seen, the anchor
+  PatchSource patch;  // from the key frame where it was first seen, the anchor
   SE3 odometry_from_anchor;
   StereoPixel anchor_pixel;
   Eigen::Vector3d in_odometry;      // metres
@@ -33,16 +33,16 @@ struct Sighting {
 
 /// A new landmark at a corner of a key frame.
 [[nodiscard]] Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
-                                     const SE3& odometry_from_camera, const StereoPixel& pixel, std::int64_t id,
-                                     double disparity_sigma_px);
+                                     const SE3& odometry_from_camera, const StereoPixel& pixel,
+                                     std::int64_t id, double disparity_sigma_px);
 
 /// Where a pose puts a landmark; nothing unless it is before the camera and well inside both pictures.
 [[nodiscard]] std::optional<StereoPixel> expected_pixel(const StereoCamera& camera, const Landmark& landmark,
                                                         const SE3& camera_from_odometry);
 
 /// Looks for a landmark where a pose puts it, within `radius_px`: its patch, warped as the pose says, in the
-/// left picture, and what is found there in the right one. Nothing if it is out of the picture, hidden, or does
-/// not look like itself.
+/// left picture, and what is found there in the right one. Nothing if it is out of the picture, hidden, or
+/// does not look like itself.
 [[nodiscard]] std::optional<Sighting> find_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
                                                     const Landmark& landmark, const SE3& camera_from_odometry,
                                                     double radius_px);

@@ -22,7 +22,8 @@ std::string described(const char* what, const GroundPlane& plane) {
 SE3 level_from_up(const Eigen::Vector3d& up_in_odometry, double height_m) {
   const Eigen::Vector3d z = up_in_odometry.normalized();
   Eigen::Vector3d forward = Eigen::Vector3d::UnitZ();
-  if (std::abs(forward.dot(z)) > 0.99) forward = camera_up();  // looking straight down: the picture's upper side
+  if (std::abs(forward.dot(z)) > 0.99)
+    forward = camera_up();  // looking straight down: the picture's upper side
   const Eigen::Vector3d x = (forward - forward.dot(z) * z).normalized();
   SE3 world_from_odometry = SE3::Identity();
   world_from_odometry.linear() << x.transpose(), z.cross(x).transpose(), z.transpose();
@@ -63,10 +64,13 @@ Level LevelStart::decide_now() const {
   const auto plane = ground();
   const bool found = plane && plane->num_patches >= options_.least_patches;
   if (measured_up_) {
-    if (!found) return {level_from_up(*measured_up_, 0), true, false, "level by gravity; no floor in view, height 0"};
+    if (!found)
+      return {level_from_up(*measured_up_, 0), true, false, "level by gravity; no floor in view, height 0"};
     return {level_from_up(*measured_up_, plane->height_m), true, true, described("level by gravity", *plane)};
   }
-  if (!found) return {level_of_camera(), false, false, "no floor in view: the first optical axis is taken as level, height 0"};
+  if (!found)
+    return {level_of_camera(), false, false,
+            "no floor in view: the first optical axis is taken as level, height 0"};
   return {level_from_up(plane->up, plane->height_m), true, true, described("level by the floor", *plane)};
 }
 

@@ -16,9 +16,9 @@ namespace flogmap {
 
 struct LevelOptions {
   GroundOptions ground;
-  double max_wait_s = 5;          // for a floor to come into view
-  int enough_patches = 300;       // on the floor: decided at once
-  int least_patches = 60;         // decided when the wait is over
+  double max_wait_s = 5;              // for a floor to come into view
+  int enough_patches = 300;           // on the floor: decided at once
+  int least_patches = 60;             // decided when the wait is over
   double max_tilt_sigma_rad = 0.006;  // a third of a degree
 };
 
@@ -30,8 +30,8 @@ struct Level {
   std::string how;            // in words, for the log
 };
 
-/// The world whose z axis is `up` (unit length, odometry frame), whose x axis is the first camera's optical axis
-/// laid flat, and in which that camera stands at (0, 0, height_m).
+/// The world whose z axis is `up` (unit length, odometry frame), whose x axis is the first camera's optical
+/// axis laid flat, and in which that camera stands at (0, 0, height_m).
 [[nodiscard]] SE3 level_from_up(const Eigen::Vector3d& up_in_odometry, double height_m);
 
 /// The world of a camera that is held level: its z (forward) is x, its x (right) is -y, its y (down) is -z.

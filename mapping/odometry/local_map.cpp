@@ -31,8 +31,8 @@ class Spacing {
 
 }  // namespace
 
-void LocalMap::add_key_frame(const RectifiedFrame& frame, FrameFeatures features, const SE3& odometry_from_camera,
-                             std::vector<Sighting> sightings) {
+void LocalMap::add_key_frame(const RectifiedFrame& frame, FrameFeatures features,
+                             const SE3& odometry_from_camera, std::vector<Sighting> sightings) {
   KeyFrame key_frame{.id = next_key_frame_++,
                      .odometry_from_camera = odometry_from_camera,
                      .left = frame.left,
@@ -74,8 +74,9 @@ FoundLandmarks LocalMap::find(const RectifiedFrame& frame, const SE3& odometry_f
                               double radius_px) const {
   std::vector<const Landmark*> newest_first;
   for (const auto& [id, landmark] : landmarks_) newest_first.push_back(&landmark);
-  std::stable_sort(newest_first.begin(), newest_first.end(),
-                   [](const Landmark* a, const Landmark* b) { return a->last_key_frame > b->last_key_frame; });
+  std::stable_sort(newest_first.begin(), newest_first.end(), [](const Landmark* a, const Landmark* b) {
+    return a->last_key_frame > b->last_key_frame;
+  });
   const SE3 camera_from_odometry = odometry_from_camera.inverse();
   Spacing spacing(frame.left.width, frame.left.height);
   FoundLandmarks found;

@@ -37,8 +37,8 @@ class LocalMap {
   [[nodiscard]] FoundLandmarks find(const RectifiedFrame& frame, const SE3& odometry_from_camera,
                                     double radius_px) const;
 
-  /// Notes which landmarks were found and which were missed by a frame, and forgets those that are missed more
-  /// often than found: hidden ones, and those at a wrong place.
+  /// Notes which landmarks were found and which were missed by a frame, and forgets those that are missed
+  /// more often than found: hidden ones, and those at a wrong place.
   void note(const std::vector<std::int64_t>& found, const std::vector<std::int64_t>& missed);
 
   void clear();

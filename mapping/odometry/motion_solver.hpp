@@ -15,16 +15,16 @@ namespace flogmap {
 
 /// A point known in the key frame, and where the current frame sees it.
 struct MotionPoint {
-  Eigen::Vector3d in_key;           // metres
-  Eigen::Matrix3d covariance;       // of in_key, metres^2
+  Eigen::Vector3d in_key;      // metres
+  Eigen::Matrix3d covariance;  // of in_key, metres^2
   StereoPixel current;
 };
 
 struct MotionOptions {
-  double image_sigma_px = 0.15;     // of x and y of an aligned corner
+  double image_sigma_px = 0.15;  // of x and y of an aligned corner
   double disparity_sigma_px = 0.15;
-  double robust_sigmas = 2.0;       // residuals beyond this many standard deviations lose weight
-  double inlier_sigmas = 4.0;       // and beyond this many are outliers
+  double robust_sigmas = 2.0;  // residuals beyond this many standard deviations lose weight
+  double inlier_sigmas = 4.0;  // and beyond this many are outliers
   int max_iterations = 12;
 };
 
@@ -37,13 +37,15 @@ struct Motion {
 
 /// Closed form: the rigid motion with the least weighted squared distances (Arun, Huang & Blostein 1987;
 /// weights as Haralick et al. 1989). Nothing if the points lie on a line or are fewer than three.
-[[nodiscard]] std::optional<SE3> align_points(const std::vector<PointPair>& pairs, const std::vector<double>& weights);
+[[nodiscard]] std::optional<SE3> align_points(const std::vector<PointPair>& pairs,
+                                              const std::vector<double>& weights);
 
 /// Levenberg-Marquardt from `start` on the stereo pixels of the current frame. The errors of the key frame's
 /// pixels enter through the points' covariances, so all four images count, as if every point were estimated
 /// along (to first order). Nothing if the points do not determine six degrees of freedom.
-[[nodiscard]] std::optional<Motion> refine_motion(const StereoCamera& camera, const std::vector<MotionPoint>& points,
-                                                  const SE3& start, const MotionOptions& options);
+[[nodiscard]] std::optional<Motion> refine_motion(const StereoCamera& camera,
+                                                  const std::vector<MotionPoint>& points, const SE3& start,
+                                                  const MotionOptions& options);
 
 /// exp of a twist (translation, rotation): rotation by Rodrigues, translation as it stands.
 [[nodiscard]] SE3 small_motion(const Eigen::Matrix<double, 6, 1>& x);

@@ -71,12 +71,14 @@ PatchSource::PatchSource(const Image<std::uint8_t>& image, const Eigen::Vector2d
 
 PatchSource::Samples PatchSource::sample(const Eigen::Matrix2d& source_from_picture) const {
   const Eigen::Matrix2f step = source_from_picture.cast<float>();
-  const Eigen::Vector2f first = centre_.cast<float>() - step * Eigen::Vector2f::Constant(0.5F * (kSampleSide - 1));
+  const Eigen::Vector2f first =
+      centre_.cast<float>() - step * Eigen::Vector2f::Constant(0.5F * (kSampleSide - 1));
   constexpr float kLimit = static_cast<float>(kSide) - 1.001F;
   Samples samples;
   for (int row = 0; row < kSampleSide; ++row) {
     for (int column = 0; column < kSampleSide; ++column) {
-      const Eigen::Vector2f at = first + static_cast<float>(column) * step.col(0) + static_cast<float>(row) * step.col(1);
+      const Eigen::Vector2f at =
+          first + static_cast<float>(column) * step.col(0) + static_cast<float>(row) * step.col(1);
       const float x = std::clamp(at.x(), 0.0F, kLimit), y = std::clamp(at.y(), 0.0F, kLimit);
       const int u = static_cast<int>(x), v = static_cast<int>(y);
       const float a = x - static_cast<float>(u), b = y - static_cast<float>(v);
@@ -125,7 +127,8 @@ struct PatchAligner::Sums {
   float variance = 0;  // of the window, times the number of samples
 };
 
-PatchAligner::Sums PatchAligner::correlate(const Image<std::uint8_t>& image, const Eigen::Vector2d& centre) const {
+PatchAligner::Sums PatchAligner::correlate(const Image<std::uint8_t>& image,
+                                           const Eigen::Vector2d& centre) const {
   const Samples window = interpolate<kSide>(image, centre);
   const float sum = total(window);
   const float mean = sum / kNumSamples;
@@ -153,7 +156,8 @@ std::optional<Alignment> PatchAligner::search(const Image<std::uint8_t>& image, 
     if (!inside(at)) return std::nullopt;
     const Sums sums = correlate(image, at);
     const Eigen::Vector3d solved = shift_and_gain(sums, row_only);
-    if (!(solved(2) > 0.1) || !solved.allFinite()) return std::nullopt;  // not even the contrast's sign is right
+    if (!(solved(2) > 0.1) || !solved.allFinite())
+      return std::nullopt;  // not even the contrast's sign is right
     const Eigen::Vector2d shift = solved.head<2>().cwiseMax(-1.5).cwiseMin(1.5);
     if (shift.norm() < kSettled_px) {
       return Alignment{at + shift, sums.patch / std::sqrt(std::max(variance_ * sums.variance, 1e-6F))};
@@ -170,8 +174,8 @@ std::optional<Alignment> PatchAligner::find(const Image<std::uint8_t>& image, co
   return search(image, start, max_shift_px, false);
 }
 
-std::optional<Alignment> PatchAligner::find_in_row(const Image<std::uint8_t>& image, const Eigen::Vector2d& start,
-                                                   double max_shift_px) const {
+std::optional<Alignment> PatchAligner::find_in_row(const Image<std::uint8_t>& image,
+                                                   const Eigen::Vector2d& start, double max_shift_px) const {
   if (!row_textured_) return std::nullopt;
   return search(image, start, max_shift_px, true);
 }

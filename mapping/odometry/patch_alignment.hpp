@@ -53,8 +53,8 @@ class PatchAligner {
                                               double max_shift_px) const;
 
   /// The same along a row only.
-  [[nodiscard]] std::optional<Alignment> find_in_row(const Image<std::uint8_t>& image, const Eigen::Vector2d& start,
-                                                     double max_shift_px) const;
+  [[nodiscard]] std::optional<Alignment> find_in_row(const Image<std::uint8_t>& image,
+                                                     const Eigen::Vector2d& start, double max_shift_px) const;
 
  private:
   static constexpr int kSide = 12;
@@ -65,8 +65,9 @@ class PatchAligner {
   struct Sums;
   [[nodiscard]] Sums correlate(const Image<std::uint8_t>& image, const Eigen::Vector2d& centre) const;
   [[nodiscard]] Eigen::Vector3d shift_and_gain(const Sums& sums, bool row_only) const;
-  [[nodiscard]] std::optional<Alignment> search(const Image<std::uint8_t>& image, const Eigen::Vector2d& start,
-                                                double max_shift_px, bool row_only) const;
+  [[nodiscard]] std::optional<Alignment> search(const Image<std::uint8_t>& image,
+                                                const Eigen::Vector2d& start, double max_shift_px,
+                                                bool row_only) const;
 
   Samples patch_, gradient_x_, gradient_y_;  // all with their means taken away
   float variance_ = 0;                       // sum of squares of patch_

@@ -16,8 +16,8 @@ class Placing {
 
   /// Each returns true once a convincing placement is found.
   bool try_key_frame(const KeyFrame& key, PatchFrame patches) {
-    const auto match = match_frames(camera_, key.matchable(), {frame_.left, features_}, patches, options_.matching,
-                                    options_.consistency);
+    const auto match = match_frames(camera_, key.matchable(), {frame_.left, features_}, patches,
+                                    options_.matching, options_.consistency);
     return match && try_pose(key.odometry_from_camera * match->current_from_key.inverse());
   }
 
@@ -37,7 +37,10 @@ class Placing {
   }
 
   PlacementResult result() && {
-    if (best_.num_inliers >= options_.min_inliers) return {std::move(best_), ""};
+    const bool many = best_.num_inliers >= options_.min_inliers;
+    const bool certain = best_.sigma_m() <= options_.max_sigma_m && best_.sigma_rad() <= options_.max_sigma_rad;
+    if (many && certain) return {std::move(best_), ""};
+    if (many) return {std::nullopt, "the landmarks found again do not fix the pose: far away, bunched or in a line"};
     if (best_.num_inliers == 0) return {std::nullopt, "too few corners agree on a motion"};
     return {std::nullopt, "too few landmarks found again (" + std::to_string(best_.num_inliers) + " of " +
                               std::to_string(options_.min_inliers) + " needed)"};

@@ -1,6 +1,8 @@
 // Where the current frame stands: hypotheses from corners, each tested on the landmarks.
 #pragma once
 
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +17,13 @@ struct PlacementOptions {
   MatchingOptions matching;
   ConsistencyOptions consistency;
   MotionOptions motion;
-  double search_radius_px = 4;      // around the place where a hypothesis puts a landmark
-  int min_inliers = 12;             // fewer: not placed
-  int many_inliers = 100;           // a pose with that many is not doubted,
-  int convincing_inliers = 30;      // nor one with this many,
-  double convincing_share = 0.3;    // if they are this share of the landmarks that should be seen
+  double search_radius_px = 4;    // around the place where a hypothesis puts a landmark
+  double max_sigma_m = 0.25;        // of the position: a pose less certain,
+  double max_sigma_rad = 0.03;      // or turned by an angle less certain, is none
+  int min_inliers = 12;           // fewer: not placed
+  int many_inliers = 100;         // a pose with that many is not doubted,
+  int convincing_inliers = 30;    // nor one with this many,
+  double convincing_share = 0.3;  // if they are this share of the landmarks that should be seen
 };
 
 /// A pose of the current frame and the landmarks that speak for it.
@@ -30,6 +34,10 @@ struct Placement {
   std::vector<bool> inlier;  // one per sighting
   int num_inliers = 0;
   std::vector<std::int64_t> missed;  // landmarks that should be seen, but are not
+
+  /// Standard deviations of the camera's position and orientation.
+  [[nodiscard]] double sigma_m() const { return std::sqrt(covariance.diagonal().head<3>().sum()); }
+  [[nodiscard]] double sigma_rad() const { return std::sqrt(covariance.diagonal().tail<3>().sum()); }
 
   /// Of the landmarks that should be seen, how many are and fit.
   [[nodiscard]] double share() const {
@@ -44,10 +52,11 @@ struct PlacementResult {
   std::string reason;
 };
 
-/// Tries the newest `num_key_frames` key frames, first upright, then turned, then the last known pose, until one
-/// convinces; else the one with most inliers, if they are enough.
-[[nodiscard]] PlacementResult place(const StereoCamera& camera, const LocalMap& map, const RectifiedFrame& frame,
-                                    const FrameFeatures& features, const SE3& last_odometry_from_camera,
-                                    int num_key_frames, const PlacementOptions& options);
+/// Tries the newest `num_key_frames` key frames, first upright, then turned, then the last known pose, until
+/// one convinces; else the one with most inliers, if they are enough.
+[[nodiscard]] PlacementResult place(const StereoCamera& camera, const LocalMap& map,
+                                    const RectifiedFrame& frame, const FrameFeatures& features,
+                                    const SE3& last_odometry_from_camera, int num_key_frames,
+                                    const PlacementOptions& options);
 
 }  // namespace flogmap

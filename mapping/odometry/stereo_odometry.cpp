@@ -19,7 +19,8 @@ void check(const OdometryOptions& options, const StereoCamera& camera) {
   require(camera.baseline_m > 0, "baseline_m must be > 0, got " + std::to_string(camera.baseline_m));
   const int min_inliers = options.placement.min_inliers;
   require(min_inliers >= 4, "min_inliers must be >= 4, got " + std::to_string(min_inliers));
-  require(options.max_key_frames >= 1, "max_key_frames must be >= 1, got " + std::to_string(options.max_key_frames));
+  require(options.max_key_frames >= 1,
+          "max_key_frames must be >= 1, got " + std::to_string(options.max_key_frames));
   require(options.key_frame_overlap > 0 && options.key_frame_overlap < 1,
           "key_frame_overlap must lie between 0 and 1, got " + std::to_string(options.key_frame_overlap));
 }
@@ -40,6 +41,7 @@ double mean_grey(const Image<std::uint8_t>& image) {
 }
 
 constexpr double kDarkGrey = 20;
+constexpr int kMinForSwapHint = 100;  // corners without a disparity
 constexpr int kKeyFramesToTry = 3;  // while not lost
 
 }  // namespace
@@ -49,7 +51,8 @@ class StereoOdometry::Tracker {
   Tracker(const OdometryOptions& options, const StereoCamera& camera)
       : options_(options),
         camera_(camera),
-        map_(camera, options.max_key_frames, options.max_landmarks, options.placement.motion.disparity_sigma_px) {}
+        map_(camera, options.max_key_frames, options.max_landmarks,
+             options.placement.motion.disparity_sigma_px) {}
 
   Tracking track(const RectifiedFrame& frame, const DisparityImage& disparity) {
     Tracking tracking = track_frame(frame, disparity);
@@ -82,8 +85,15 @@ class StereoOdometry::Tracker {
   }
 
   [[nodiscard]] std::string too_few_corners(const Current& current) const {
-    const char* why = mean_grey(current.frame.left) < kDarkGrey ? "too dark: too few corners" : "too few corners";
-    return counted(why, static_cast<int>(current.features.corners.size()), options_.min_corners);
+    const int num_corners = static_cast<int>(current.features.corners.size());
+    if (mean_grey(current.frame.left) < kDarkGrey) {
+      return counted("too dark: too few corners", num_corners, options_.min_corners);
+    }
+    if (current.features.num_without_disparity >= kMinForSwapHint) {
+      return counted("too few corners with a disparity, are left and right swapped?", num_corners,
+                     options_.min_corners);
+    }
+    return counted("too few corners", num_corners, options_.min_corners);
   }
 
   Tracking without_pose(Tracking tracking, std::string reason) const {
@@ -106,17 +116,25 @@ class StereoOdometry::Tracker {
   Tracking start_segment(Tracking tracking, Current& current, const std::string& reason) {
     map_.clear();
     ++segment_;
-    return start(std::move(tracking), current, "not found again (" + reason + "): goes on from the last known pose");
+    return start(std::move(tracking), current,
+                 "not found again (" + reason + "): goes on from the last known pose");
+  }
+
+  /// Why a pose is weak; empty if it is not.
+  [[nodiscard]] std::string weakness(const Placement& placed) const {
+    if (placed.num_inliers < options_.weak_inliers) {
+      return counted("few landmarks found again", placed.num_inliers, options_.weak_inliers);
+    }
+    const bool certain = placed.sigma_m() <= options_.weak_sigma_m;
+    return certain ? "" : "the landmarks fix the position badly: far away, bunched or in a line";
   }
 
   Tracking with_pose(Tracking tracking, Current& current, const Placement& placed) {
     num_lost_ = 0;
     pose_ = placed.odometry_from_camera;
     const int num_inliers = placed.num_inliers;
-    tracking.state = num_inliers < options_.weak_inliers ? TrackingState::weak : TrackingState::ok;
-    if (tracking.state == TrackingState::weak) {
-      tracking.reason = counted("few landmarks found again", num_inliers, options_.weak_inliers);
-    }
+    tracking.reason = weakness(placed);
+    tracking.state = tracking.reason.empty() ? TrackingState::ok : TrackingState::weak;
     tracking.odometry_from_camera = pose_;
     tracking.covariance = placed.covariance;
     tracking.matches = matches_of(placed);
@@ -132,14 +150,15 @@ class StereoOdometry::Tracker {
   /// The landmarks that the newest key frame sees, too.
   [[nodiscard]] std::vector<Match> matches_of(const Placement& placed) const {
     std::map<std::int64_t, Eigen::Vector2f> key_px;
-    for (const Sighting& s : map_.key_frames().back().sightings) key_px[s.landmark] = s.pixel.head<2>().cast<float>();
+    for (const Sighting& s : map_.key_frames().back().sightings)
+      key_px[s.landmark] = s.pixel.head<2>().cast<float>();
     std::vector<Match> matches;
     for (std::size_t i = 0; i < placed.sightings.size(); ++i) {
       const Sighting& s = placed.sightings[i];
       const auto key = key_px.find(s.landmark);
       if (key == key_px.end()) continue;
-      matches.push_back({key->second, s.pixel.head<2>().cast<float>(), static_cast<float>(s.pixel.z()),
-                         placed.inlier[i]});
+      matches.push_back(
+          {key->second, s.pixel.head<2>().cast<float>(), static_cast<float>(s.pixel.z()), placed.inlier[i]});
     }
     return matches;
   }

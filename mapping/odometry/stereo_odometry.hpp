@@ -17,6 +17,7 @@ struct OdometryOptions {
   int max_landmarks = 250;         // followed at a time
   int min_corners = 25;            // with disparity; fewer: the frame cannot be placed
   int weak_inliers = 20;           // fewer: weak
+  double weak_sigma_m = 0.06;      // of the position; larger: weak
   double key_frame_overlap = 0.6;  // a new key frame when a smaller share of the last one's landmarks is seen
   int max_key_frames = 8;          // that are remembered
   int max_lost_frames = 5;         // frames with corners but no pose before a new segment starts
@@ -26,8 +27,9 @@ struct OdometryOptions {
 /// random choice and no thread inside: the same frames give the same bits.
 ///
 /// The first frame with enough corners is the origin: odometry_from_camera = identity. A frame that cannot be
-/// placed is lost: it has no pose, only a reason in words. Later frames are tried against the recent key frames;
-/// after `max_lost_frames` a new segment starts at the last known pose, says so in `reason`, and is weak.
+/// placed is lost: it has no pose, only a reason in words. Later frames are tried against the recent key
+/// frames; after `max_lost_frames` a new segment starts at the last known pose, says so in `reason`, and is
+/// weak.
 class StereoOdometry {
  public:
   /// Throws std::runtime_error naming the field if the camera or an option is impossible.

@@ -30,7 +30,9 @@ std::vector<PosePair> pairs_by_number(const Trajectory& estimate, const Trajecto
 
 std::vector<PosePair> pairs_by_time(const Trajectory& estimate, const Trajectory& truth) {
   std::vector<PosePair> pairs;
-  const auto gap = [](const TimedPose& a, const TimedPose& b) { return std::abs(a.timestamp_ns - b.timestamp_ns); };
+  const auto gap = [](const TimedPose& a, const TimedPose& b) {
+    return std::abs(a.timestamp_ns - b.timestamp_ns);
+  };
   std::size_t j = 0;
   for (const TimedPose& pose : estimate.poses) {
     while (j + 1 < truth.poses.size() && gap(pose, truth.poses[j + 1]) <= gap(pose, truth.poses[j])) ++j;
@@ -63,7 +65,8 @@ void measure_absolute(const std::vector<PosePair>& pairs, TrajectoryError& error
   error.truth_from_estimate = best_alignment(pairs);
   double sum = 0;
   for (const PosePair& pair : pairs) {
-    const double gap = (error.truth_from_estimate * pair.estimate.translation() - pair.truth.translation()).norm();
+    const double gap =
+        (error.truth_from_estimate * pair.estimate.translation() - pair.truth.translation()).norm();
     sum += gap * gap;
     error.ate_max_m = std::max(error.ate_max_m, gap);
   }

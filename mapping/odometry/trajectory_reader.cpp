@@ -93,7 +93,8 @@ SE3 pose_of(const Line& line, const Eigen::Vector3d& translation, const Eigen::Q
 SE3 kitti_pose(const Line& line, const std::vector<double>& v) {
   Eigen::Matrix3d R;
   R << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
-  if ((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() > 0.01) fail(line, "the first 3 x 3 numbers must be a rotation");
+  if ((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() > 0.01)
+    fail(line, "the first 3 x 3 numbers must be a rotation");
   return pose_of(line, {v[3], v[7], v[11]}, Eigen::Quaterniond(R));
 }
 
@@ -108,7 +109,8 @@ Kind kind_of(const Line& line, std::size_t num_words) {
 TimedPose parse(const Line& line, Kind kind, std::int64_t number) {
   const auto words = words_of(line.text);
   const std::size_t needed = kind == Kind::kitti ? 12 : 8;
-  if (words.size() < needed) fail(line, "has " + std::to_string(words.size()) + " of " + std::to_string(needed) + " numbers");
+  if (words.size() < needed)
+    fail(line, "has " + std::to_string(words.size()) + " of " + std::to_string(needed) + " numbers");
   std::vector<double> v;
   for (std::size_t i = 0; i < needed; ++i) v.push_back(number_of(line, words[i]));
   const Eigen::Vector3d translation(v[1], v[2], v[3]);

@@ -1,5 +1,6 @@
-// The odometry on every recording with true poses under FLOGMAP_DATA: errors of the path and time per frame. Prints
-// a table (--markdown: one for the docs) and writes build/bench/motion.json (or the path in the last argument).
+// The odometry on every recording with true poses under FLOGMAP_DATA: errors of the path and time per frame.
+// Prints a table (--markdown: one for the docs) and writes build/bench/motion.json (or the path in the last
+// argument).
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -24,9 +25,9 @@ namespace {
 
 struct Recording {
   std::string name;
-  std::string kind;   // of the source
-  std::string truth;  // file in its folder
-  int every = 1;      // frames from one to the next
+  std::string kind;                    // of the source
+  std::string truth;                   // file in its folder
+  int every = 1;                       // frames from one to the next
   int cover_from = -1, cover_to = -1;  // the lens is covered during these frames
 
   [[nodiscard]] std::string title() const {
@@ -106,8 +107,9 @@ Result run(const Recording& recording, const std::filesystem::path& folder) {
 void print_row(const Result& r, bool markdown) {
   const TrajectoryError& e = r.error;
   const auto print = [&](const char* format) {
-    std::printf(format, r.name.c_str(), r.num_frames, r.num_lost, e.path_length_m, e.ate_rmse_m, e.rpe_rmse_m, e.rpe_rmse_deg,
-                e.drift_percent, e.drift_deg_per_m, e.end_error_m, r.median_cpu_ms, r.p95_cpu_ms);
+    std::printf(format, r.name.c_str(), r.num_frames, r.num_lost, e.path_length_m, e.ate_rmse_m, e.rpe_rmse_m,
+                e.rpe_rmse_deg, e.drift_percent, e.drift_deg_per_m, e.end_error_m, r.median_cpu_ms,
+                r.p95_cpu_ms);
   };
   if (markdown) {
     print("| %s | %d | %d | %.1f | %.4f | %.4f | %.3f | %.2f | %.3f | %.3f | %.1f | %.1f |\n");
@@ -118,11 +120,13 @@ void print_row(const Result& r, bool markdown) {
 
 void print_head(bool markdown) {
   if (!markdown) {
-    std::printf("%-28s %5s %4s %7s %8s %8s %7s %6s %8s %7s %7s %6s\n", "recording", "pairs", "lost", "path m", "ATE m", "RPE m",
-                "RPE deg", "drift%", "deg/m", "end m", "CPU ms", "p95 ms");
+    std::printf("%-28s %5s %4s %7s %8s %8s %7s %6s %8s %7s %7s %6s\n", "recording", "pairs", "lost", "path m",
+                "ATE m", "RPE m", "RPE deg", "drift%", "deg/m", "end m", "CPU ms", "p95 ms");
     return;
   }
-  std::printf("| recording | frames | lost | path [m] | ATE [m] | RPE [m] | RPE [deg] | drift [%%] | drift [deg/m] | end [m] | CPU [ms] | p95 [ms] |\n");
+  std::printf(
+      "| recording | frames | lost | path [m] | ATE [m] | RPE [m] | RPE [deg] | drift [%%] | drift [deg/m] | "
+      "end [m] | CPU [ms] | p95 [ms] |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 

@@ -20,7 +20,8 @@ std::vector<SE3> round_trip(int count, int repeated, int num_views = 1000) {
   std::vector<SE3> poses;
   for (int i = 0; i < std::min(count + repeated, num_views); ++i) {
     const double angle = 2 * kPi * i / count;
-    poses.push_back(camera_at({0.6 * std::sin(angle), -0.6 * std::cos(angle), 1.3}, angle, 0.05 * std::sin(3 * angle)));
+    poses.push_back(
+        camera_at({0.6 * std::sin(angle), -0.6 * std::cos(angle), 1.3}, angle, 0.05 * std::sin(3 * angle)));
   }
   return poses;
 }
@@ -31,13 +32,15 @@ std::vector<SE3> drifted(const std::vector<SE3>& truth, const Eigen::Vector3d& m
   error.linear() = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
   error.translation() = metres;
   std::vector<SE3> poses{truth.front()};
-  for (std::size_t i = 1; i < truth.size(); ++i) poses.push_back(poses.back() * (truth[i - 1].inverse() * truth[i]) * error);
+  for (std::size_t i = 1; i < truth.size(); ++i)
+    poses.push_back(poses.back() * (truth[i - 1].inverse() * truth[i]) * error);
   return poses;
 }
 
 View view_of(const TexturedRoom& room, const SE3& truth, const SE3& odometry, int number) {
   RenderedFrame frame = room.render(truth);
-  return {number * std::int64_t{500'000'000}, odometry, std::move(frame.disparity), std::move(frame.pair.left)};
+  return {number * std::int64_t{500'000'000}, odometry, std::move(frame.disparity),
+          std::move(frame.pair.left)};
 }
 
 double rms_gap(const std::vector<SE3>& a, const std::vector<SE3>& b) {
@@ -57,7 +60,8 @@ TEST(LoopCloser, ClosesARoundTripAndTakesTheDriftAway) {
     if (!correction) continue;
     EXPECT_GE(correction->view - correction->earlier_view, LoopOptions{}.min_views_apart);
     EXPECT_EQ(correction->world_from_camera.size(), static_cast<std::size_t>(i + 1));
-    EXPECT_TRUE((correction->map_from_odometry * odometry[i]).isApprox(correction->world_from_camera.back(), 1e-9));
+    EXPECT_TRUE(
+        (correction->map_from_odometry * odometry[i]).isApprox(correction->world_from_camera.back(), 1e-9));
     last = std::move(correction);
   }
   ASSERT_TRUE(last);
@@ -118,7 +122,8 @@ TEST(LoopCloser, NobodyIsCarriedFasterThanTheyCanWalk) {
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(closer.add(view_of(room, truth[i], truth[i], i), 0));
   SE3 far_away = SE3::Identity();
   far_away.translation() = Eigen::Vector3d(30, 0, 0);
-  for (int i = 2; i < 8; ++i) EXPECT_FALSE(closer.add(view_of(room, truth[i], far_away * truth[i], 18 + i), 1));
+  for (int i = 2; i < 8; ++i)
+    EXPECT_FALSE(closer.add(view_of(room, truth[i], far_away * truth[i], 18 + i), 1));
 }
 
 TEST(PlaceIndex, FindsTheViewThatSharesPatchesAndNoOther) {

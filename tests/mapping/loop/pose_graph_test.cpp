@@ -20,7 +20,8 @@ std::vector<SE3> circle(int count) {
     const double angle = 2 * std::numbers::pi * i / (count - 1);
     SE3 pose = SE3::Identity();
     pose.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    pose.translation() = Eigen::Vector3d(2 * std::sin(angle), 2 - 2 * std::cos(angle), 0.1 * std::sin(3 * angle));
+    pose.translation() =
+        Eigen::Vector3d(2 * std::sin(angle), 2 - 2 * std::cos(angle), 0.1 * std::sin(3 * angle));
     poses.push_back(pose);
   }
   return poses;
@@ -40,7 +41,8 @@ Vector6 random_twist(std::mt19937& random, double sigma_m, double sigma_rad) {
 }
 
 /// Edges from each pose to the next, with noise.
-std::vector<PoseEdge> noisy_steps(const std::vector<SE3>& truth, std::mt19937& random, double sigma_m, double sigma_rad) {
+std::vector<PoseEdge> noisy_steps(const std::vector<SE3>& truth, std::mt19937& random, double sigma_m,
+                                  double sigma_rad) {
   std::vector<PoseEdge> edges;
   for (int i = 1; i < static_cast<int>(truth.size()); ++i) {
     const SE3 step = truth[i - 1].inverse() * truth[i];
@@ -77,7 +79,8 @@ TEST(PoseGraph, ExactEdgesAreMetFromABadStart) {
   for (PoseEdge& e : edges) e.covariance = covariance_of(0.01, 0.01);
   edges.push_back({0, 29, truth[0].inverse() * truth[29], covariance_of(0.01, 0.01), true});
   auto start = truth;
-  for (std::size_t i = 1; i < start.size(); ++i) start[i] = start[i] * small_motion(random_twist(random, 0.2, 0.2));
+  for (std::size_t i = 1; i < start.size(); ++i)
+    start[i] = start[i] * small_motion(random_twist(random, 0.2, 0.2));
   EXPECT_LT(rms_gap(optimise_poses(start, edges, {}), truth), 1e-6);
 }
 

@@ -86,7 +86,8 @@ TEST(ConsistentSet, DoesNotDependOnTheRigidFrame) {
   EXPECT_EQ(set, largest_consistent_set(kMatchCamera, matches.pairs, {.image_sigma_px = 0.1}));
   auto swapped = matches.pairs;
   for (PointPair& pair : swapped) std::swap(pair.in_key, pair.in_current);
-  EXPECT_EQ(set, largest_consistent_set(kMatchCamera, swapped, {.image_sigma_px = 0.1})) << "and not on its order";
+  EXPECT_EQ(set, largest_consistent_set(kMatchCamera, swapped, {.image_sigma_px = 0.1}))
+      << "and not on its order";
 }
 
 TEST(ConsistentSet, OfNothingIsEmpty) { EXPECT_TRUE(largest_consistent_set(kMatchCamera, {}, {}).empty()); }

@@ -50,7 +50,8 @@ TEST(Corners, MoveWithThePictureToAFractionOfAPixel) {
   int num_found = 0;
   for (const Corner& c : still) {
     const Eigen::Vector2f expected = c.px - Eigen::Vector2f(2.4F, -1.3F);
-    num_found += std::any_of(moved.begin(), moved.end(), [&](const Corner& m) { return (m.px - expected).norm() < 0.5F; });
+    num_found += std::any_of(moved.begin(), moved.end(),
+                             [&](const Corner& m) { return (m.px - expected).norm() < 0.5F; });
   }
   EXPECT_GT(num_found, 0.4 * static_cast<double>(still.size())) << "by chance it would be 2 in 100";
 }
@@ -62,23 +63,28 @@ TEST(Corners, AreNotSeenInPlainOrTinyPictures) {
 
 /// Share of the matches that are right when picture `b` shows pixel p of `a` at `b_from_a(p)`.
 template <typename Map>
-double share_of_right_matches(const Image<std::uint8_t>& a, const Image<std::uint8_t>& b, PatchFrame frame, Map b_from_a) {
+double share_of_right_matches(const Image<std::uint8_t>& a, const Image<std::uint8_t>& b, PatchFrame frame,
+                              Map b_from_a) {
   const auto from = detect_corners(a, {}), to = detect_corners(b, {});
   const auto pairs = match_mutually(describe(a, from, frame), describe(b, to, frame), 0.6);
   int right = 0;
-  for (const IndexPair& p : pairs) right += (b_from_a(from[p.key].px) - to[p.current].px).norm() < 1.5F ? 1 : 0;
+  for (const IndexPair& p : pairs)
+    right += (b_from_a(from[p.key].px) - to[p.current].px).norm() < 1.5F ? 1 : 0;
   return static_cast<double>(right) / static_cast<double>(from.size());
 }
 
 TEST(Descriptors, IgnoreBrightnessAndContrast) {
   const auto same = [](const Eigen::Vector2f& p) { return p; };
-  EXPECT_GT(share_of_right_matches(noise_picture({0, 0}), noise_picture({0, 0}, 0.6, 30), PatchFrame::upright, same), 0.9);
+  EXPECT_GT(share_of_right_matches(noise_picture({0, 0}), noise_picture({0, 0}, 0.6, 30), PatchFrame::upright,
+                                   same),
+            0.9);
 }
 
 TEST(Descriptors, InTheirOwnOrientationSurviveAHalfTurn) {
   const auto image = noise_picture({0, 0});
   const auto turn = [&](const Eigen::Vector2f& p) {
-    return Eigen::Vector2f(static_cast<float>(image.width - 1) - p.x(), static_cast<float>(image.height - 1) - p.y());
+    return Eigen::Vector2f(static_cast<float>(image.width - 1) - p.x(),
+                           static_cast<float>(image.height - 1) - p.y());
   };
   EXPECT_GT(share_of_right_matches(image, half_turned(image), PatchFrame::own_orientation, turn), 0.6);
   EXPECT_LT(share_of_right_matches(image, half_turned(image), PatchFrame::upright, turn), 0.1);

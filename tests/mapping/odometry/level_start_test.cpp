@@ -70,7 +70,8 @@ TEST(LevelOfCamera, ForwardIsXAndRightIsMinusYAndDownIsMinusZ) {
 }
 
 TEST(LevelFromUp, IsARotationThatTakesUpToZAndKeepsTheOpticalAxisOverX) {
-  for (const Eigen::Vector3d& up : {Eigen::Vector3d(0.1, -0.9, -0.4), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(-0.5, -0.5, 0.2)}) {
+  for (const Eigen::Vector3d& up :
+       {Eigen::Vector3d(0.1, -0.9, -0.4), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(-0.5, -0.5, 0.2)}) {
     const SE3 world_from_odometry = level_from_up(up.normalized(), 1.5);
     EXPECT_NEAR(world_from_odometry.linear().determinant(), 1, 1e-12);
     EXPECT_TRUE((world_from_odometry.linear() * up.normalized()).isApprox(Eigen::Vector3d::UnitZ()));

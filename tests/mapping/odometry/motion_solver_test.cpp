@@ -52,8 +52,8 @@ TEST(ClosedForm, RefusesPointsOnALineAndFewerThanThree) {
 }
 
 /// Points as the key frame measures them, and where the current frame sees them.
-std::vector<MotionPoint> noisy_points(std::mt19937& random, const SE3& current_from_key, int count, double sigma_px,
-                                      double near_m, double far_m) {
+std::vector<MotionPoint> noisy_points(std::mt19937& random, const SE3& current_from_key, int count,
+                                      double sigma_px, double near_m, double far_m) {
   std::normal_distribution<double> noise(0, sigma_px);
   const auto disturb = [&](const StereoPixel& s) {
     return StereoPixel(s + StereoPixel(noise(random), noise(random), noise(random)));
@@ -88,8 +88,8 @@ TEST(RefinedMotion, ErrorIsWhatTheCovarianceSays) {
     const Vector6 error = twist_of(found->current_from_key * motion.inverse());
     sum += error.dot(found->covariance.ldlt().solve(error));
   }
-  // The mean of 300 such numbers has a standard deviation of sqrt(12 / 300) = 0.2. The covariance is never made
-  // smaller than promised but is enlarged where residuals are large, so the mean lies a little below 6.
+  // The mean of 300 such numbers has a standard deviation of sqrt(12 / 300) = 0.2. The covariance is never
+  // made smaller than promised but is enlarged where residuals are large, so the mean lies a little below 6.
   EXPECT_GT(sum / kTrials, 4.8);
   EXPECT_LT(sum / kTrials, 6.6);
 }
@@ -111,8 +111,10 @@ TEST(RefinedMotion, IsNotBentByWrongPoints) {
 TEST(RefinedMotion, FarPointsOnlyLeaveTheTranslationUncertainAndSaySo) {
   std::mt19937 random(8);
   const SE3 motion = random_motion(random, 0.1, 0.05);
-  const auto far = refine_motion(kMatchCamera, noisy_points(random, motion, 80, 0.1, 40, 60), SE3::Identity(), with_noise(0.1));
-  const auto near = refine_motion(kMatchCamera, noisy_points(random, motion, 80, 0.1, 1, 3), SE3::Identity(), with_noise(0.1));
+  const auto far = refine_motion(kMatchCamera, noisy_points(random, motion, 80, 0.1, 40, 60), SE3::Identity(),
+                                 with_noise(0.1));
+  const auto near = refine_motion(kMatchCamera, noisy_points(random, motion, 80, 0.1, 1, 3), SE3::Identity(),
+                                  with_noise(0.1));
   ASSERT_TRUE(far && near);
   const auto uncertainty = [](const Motion& m) { return m.covariance.diagonal().head(3).sum(); };
   EXPECT_GT(uncertainty(*far), 100 * uncertainty(*near));
@@ -120,7 +122,8 @@ TEST(RefinedMotion, FarPointsOnlyLeaveTheTranslationUncertainAndSaySo) {
 
 TEST(RefinedMotion, RefusesTooFewPoints) {
   std::mt19937 random(10);
-  EXPECT_FALSE(refine_motion(kMatchCamera, noisy_points(random, SE3::Identity(), 2, 0.1, 1, 4), SE3::Identity(), {}));
+  EXPECT_FALSE(
+      refine_motion(kMatchCamera, noisy_points(random, SE3::Identity(), 2, 0.1, 1, 4), SE3::Identity(), {}));
 }
 
 TEST(SmallMotion, TurnsByTheLengthOfTheVector) {

@@ -23,14 +23,15 @@ Tracking track(StereoOdometry& odometry, const RenderedFrame& frame) {
 
 /// A walk along an arc, as by hand: turns, nods and rolls.
 SE3 hand_held(double s) {
-  return camera_at({-1.5 + 0.8 * s, 0.3 * std::sin(2 * s), 1.3 + 0.05 * std::sin(5 * s)}, 0.4 * s, 0.1 * std::sin(3 * s),
-                   0.15 * std::sin(4 * s));
+  return camera_at({-1.5 + 0.8 * s, 0.3 * std::sin(2 * s), 1.3 + 0.05 * std::sin(5 * s)}, 0.4 * s,
+                   0.1 * std::sin(3 * s), 0.15 * std::sin(4 * s));
 }
 
 RenderedFrame dark_frame() {
   RenderedFrame frame;
   frame.pair.left = frame.pair.right = Image<std::uint8_t>(kRoomCamera.width_px, kRoomCamera.height_px, 4);
-  frame.disparity.px = Image<float>(kRoomCamera.width_px, kRoomCamera.height_px, std::numeric_limits<float>::quiet_NaN());
+  frame.disparity.px =
+      Image<float>(kRoomCamera.width_px, kRoomCamera.height_px, std::numeric_limits<float>::quiet_NaN());
   return frame;
 }
 
@@ -158,6 +159,51 @@ TEST(StereoOdometry, PlainSurfacesAreNeverGivenAPose) {
   }
 }
 
+TEST(StereoOdometry, SwappedPicturesAreNoticed) {
+  StereoOdometry odometry({}, kRoomCamera);
+  RenderedFrame frame = TexturedRoom{}.render(hand_held(0));
+  std::swap(frame.pair.left, frame.pair.right);
+  for (float& d : frame.disparity.px.pixels) d = std::numeric_limits<float>::quiet_NaN();  // nothing matches
+  const Tracking tracking = track(odometry, frame);
+  EXPECT_FALSE(tracking.has_pose());
+  EXPECT_THAT(tracking.reason, HasSubstr("swapped"));
+}
+
+TEST(StereoOdometry, FarPointsOnlyGiveNoPoseThatIsWrong) {
+  const TexturedRoom hall{.half_m = {60, 60, 0}, .height_m = 60, .feature_size_m = 2};
+  StereoOdometry odometry({}, kRoomCamera);
+  const auto pose = [](int i) { return camera_at({0.1 * i, 0, 30}, 0); };
+  (void)track(odometry, hall.render(pose(0)));
+  for (int i = 1; i < 4; ++i) {
+    const Tracking tracking = track(odometry, hall.render(pose(i)));  // 60 m away at a baseline of 0.12 m
+    if (tracking.state != TrackingState::ok) continue;
+    EXPECT_LT(error_of(tracking, pose(0), pose(i)).first, 0.15) << i;
+  }
+}
+
+/// Only what `keep` says is textured; the rest of the picture is plain.
+template <typename Keep>
+RenderedFrame masked(RenderedFrame frame, Keep keep) {
+  for (int y = 0; y < frame.pair.left.height; ++y) {
+    for (int x = 0; x < frame.pair.left.width; ++x) {
+      if (keep(x, y)) continue;
+      frame.pair.left.at(x, y) = frame.pair.right.at(x, y) = 120;
+      frame.disparity.px.at(x, y) = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return frame;
+}
+
+TEST(StereoOdometry, AFewBunchedPointsGiveNoPose) {
+  const TexturedRoom room;
+  const auto in_a_bunch = [](int x, int y) { return std::abs(x - 160) < 16 && std::abs(y - 120) < 16; };
+  StereoOdometry odometry({}, kRoomCamera);
+  (void)track(odometry, room.render(hand_held(0)));
+  const Tracking tracking = track(odometry, masked(room.render(hand_held(0.02)), in_a_bunch));
+  EXPECT_EQ(tracking.state, TrackingState::lost);
+  EXPECT_FALSE(tracking.reason.empty());
+}
+
 TEST(StereoOdometry, OneTexturedWallIsEnough) {
   const TexturedRoom room;
   StereoOdometry odometry({}, kRoomCamera);
@@ -190,10 +236,13 @@ TEST(StereoOdometry, MatchesLieInThePictureAndInliersAreAmongThem) {
   StereoOdometry odometry({}, kRoomCamera);
   (void)track(odometry, room.render(hand_held(0)));
   const Tracking tracking = track(odometry, room.render(hand_held(0.05)));
-  EXPECT_GT(std::count_if(tracking.matches.begin(), tracking.matches.end(), [](const Match& m) { return m.inlier; }), 50);
+  EXPECT_GT(std::count_if(tracking.matches.begin(), tracking.matches.end(),
+                          [](const Match& m) { return m.inlier; }),
+            50);
   const Image<std::uint8_t> picture(kRoomCamera.width_px, kRoomCamera.height_px);
   for (const Match& match : tracking.matches) {
-    EXPECT_TRUE(picture.contains(static_cast<int>(match.current_px.x()), static_cast<int>(match.current_px.y())));
+    EXPECT_TRUE(
+        picture.contains(static_cast<int>(match.current_px.x()), static_cast<int>(match.current_px.y())));
     EXPECT_GT(match.current_disparity_px, 0);
   }
 }

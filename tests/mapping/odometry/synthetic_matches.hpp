@@ -22,7 +22,9 @@ inline Eigen::Vector3d random_point(std::mt19937& random, double near_m, double 
 
 inline SE3 random_motion(std::mt19937& random, double metres, double radians) {
   std::normal_distribution<double> normal;
-  const auto direction = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized(); };
+  const auto direction = [&] {
+    return Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+  };
   SE3 motion = SE3::Identity();
   motion.linear() = Eigen::AngleAxisd(radians, direction()).toRotationMatrix();
   motion.translation() = metres * direction();
@@ -43,8 +45,8 @@ struct SyntheticMatches {
 };
 
 /// `num_right` true correspondences of one motion, shuffled among `num_wrong` that belong to none.
-inline SyntheticMatches synthetic_matches(std::mt19937& random, const SE3& current_from_key, int num_right, int num_wrong,
-                                          double sigma_px) {
+inline SyntheticMatches synthetic_matches(std::mt19937& random, const SE3& current_from_key, int num_right,
+                                          int num_wrong, double sigma_px) {
   SyntheticMatches matches{current_from_key, {}, {}};
   matches.right.assign(num_right + num_wrong, false);
   std::fill_n(matches.right.begin(), num_right, true);

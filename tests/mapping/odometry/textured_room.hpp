@@ -43,7 +43,7 @@ inline double value_noise(double x, double y, std::int64_t seed) {
 struct TexturedRoom {
   Eigen::Vector3d half_m{3, 2.5, 0};
   double height_m = 2.6;
-  double contrast = 1;         // 0: nothing to see
+  double contrast = 1;  // 0: nothing to see
   double feature_size_m = 0.05;
   std::int64_t seed = 1;
 
@@ -56,7 +56,8 @@ struct TexturedRoom {
   }
 
   /// Grey value seen along a ray, and how many times the direction it is away.
-  [[nodiscard]] std::pair<double, double> look(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const {
+  [[nodiscard]] std::pair<double, double> look(const Eigen::Vector3d& from,
+                                               const Eigen::Vector3d& direction) const {
     const Eigen::Vector3d low(-half_m.x(), -half_m.y(), 0), high(half_m.x(), half_m.y(), height_m);
     double nearest = std::numeric_limits<double>::infinity();
     int wall = 0;
@@ -81,7 +82,8 @@ struct TexturedRoom {
     const Eigen::Vector3d right_eye = world_from_camera * Eigen::Vector3d(camera.baseline_m, 0, 0);
     for (int y = 0; y < camera.height_px; ++y) {
       for (int x = 0; x < camera.width_px; ++x) {
-        const Eigen::Vector3d ray((x - camera.cx_px) / camera.focal_px, (y - camera.cy_px) / camera.focal_px, 1);
+        const Eigen::Vector3d ray((x - camera.cx_px) / camera.focal_px, (y - camera.cy_px) / camera.focal_px,
+                                  1);
         const Eigen::Vector3d direction = world_from_camera.linear() * ray;
         const auto [left, Z] = look(world_from_camera.translation(), direction);
         frame.pair.left.at(x, y) = static_cast<std::uint8_t>(std::clamp(left + 0.5, 0.0, 255.0));
@@ -95,12 +97,14 @@ struct TexturedRoom {
 };
 
 /// A camera at a place that looks along the floor in the direction `yaw`, then turned by pitch and roll.
-inline SE3 camera_at(const Eigen::Vector3d& place, double yaw_rad, double pitch_rad = 0, double roll_rad = 0) {
+inline SE3 camera_at(const Eigen::Vector3d& place, double yaw_rad, double pitch_rad = 0,
+                     double roll_rad = 0) {
   Eigen::Matrix3d level_from_camera;  // x right, y down, z forward -> x forward, y left, z up
   level_from_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   SE3 pose = SE3::Identity();
   pose.translation() = place;
-  pose.linear() = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level_from_camera *
+  pose.linear() = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+                  level_from_camera *
                   Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitX()).toRotationMatrix() *
                   Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   return pose;

@@ -32,12 +32,14 @@ class TrajectoryFile : public testing::Test {
 };
 
 TEST_F(TrajectoryFile, TumIsReadWithNanosecondsExact) {
-  const auto t = read_trajectory(write("# comment\n1403636584.763555584 1 2 3 0 0 0 1\n1403636584.8 4 5 6 1 0 0 0\n"));
+  const auto t =
+      read_trajectory(write("# comment\n1403636584.763555584 1 2 3 0 0 0 1\n1403636584.8 4 5 6 1 0 0 0\n"));
   ASSERT_EQ(t.poses.size(), 2U);
   EXPECT_EQ(t.poses[0].timestamp_ns, 1403636584763555584);
   EXPECT_EQ(t.poses[1].timestamp_ns, 1403636584800000000);
   EXPECT_EQ(t.poses[0].world_from_camera.translation(), Eigen::Vector3d(1, 2, 3));
-  EXPECT_TRUE(t.poses[1].world_from_camera.linear().isApprox(Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix()));
+  EXPECT_TRUE(t.poses[1].world_from_camera.linear().isApprox(
+      Eigen::Vector3d(1, -1, -1).asDiagonal().toDenseMatrix()));
   EXPECT_TRUE(t.timed);
 }
 
@@ -56,12 +58,14 @@ TEST_F(TrajectoryFile, KittiIsNumbered) {
 }
 
 TEST_F(TrajectoryFile, ErrorsNameFileLineAndWhatIsAllowed) {
-  EXPECT_THAT(complaint("1 2 3\n"), AllOf(HasSubstr("trajectory_ErrorsName"), HasSubstr(":1: has 3 numbers"), HasSubstr("KITTI")));
+  EXPECT_THAT(complaint("1 2 3\n"),
+              AllOf(HasSubstr("trajectory_ErrorsName"), HasSubstr(":1: has 3 numbers"), HasSubstr("KITTI")));
   EXPECT_THAT(complaint("1 1 2 3 0 0 0 1\n2 1 2 3 0 0 x 1\n"), HasSubstr(":2: 'x' is not a number"));
   EXPECT_THAT(complaint("1 1 2 3 0 0 0 1\n2 1 2 3 0 0\n"), HasSubstr(":2: has 6 of 8 numbers"));
   EXPECT_THAT(complaint("1 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1\n"), HasSubstr(":2: times must increase"));
   EXPECT_THAT(complaint("1 1 2 3 0 0 0 2\n"), HasSubstr(":1: the quaternion's length must be 1"));
-  EXPECT_THAT(complaint("1 0 0 5 0 2 0 6 0 0 1 7\n"), HasSubstr(":1: the first 3 x 3 numbers must be a rotation"));
+  EXPECT_THAT(complaint("1 0 0 5 0 2 0 6 0 0 1 7\n"),
+              HasSubstr(":1: the first 3 x 3 numbers must be a rotation"));
   EXPECT_THAT(complaint("# nothing\n"), HasSubstr("holds no pose"));
   EXPECT_THROW((void)read_trajectory("/nowhere/t.tum"), std::runtime_error);
 }
@@ -69,7 +73,9 @@ TEST_F(TrajectoryFile, ErrorsNameFileLineAndWhatIsAllowed) {
 SE3 random_pose(std::mt19937& random) {
   std::normal_distribution<double> normal;
   SE3 pose = SE3::Identity();
-  pose.linear() = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized().toRotationMatrix();
+  pose.linear() = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
+                      .normalized()
+                      .toRotationMatrix();
   pose.translation() = Eigen::Vector3d(normal(random), normal(random), normal(random));
   return pose;
 }
