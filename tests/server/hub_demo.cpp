@@ -1,4 +1,4 @@
-// hub_demo PORT SECONDS [WEB_ROOT]: a synthetic map, growing, through the real Hub. See README.md.
+// hub_demo PORT SECONDS [WEB_ROOT [CERT KEY]]: a synthetic map, growing, through the real Hub. See README.md.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -45,18 +45,22 @@ void walk(Hub& hub, FakeSession& session, std::chrono::seconds duration, const s
 
 int main(int argc, char** argv) try {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: hub_demo PORT SECONDS [WEB_ROOT]\n");
+    std::fprintf(stderr, "usage: hub_demo PORT SECONDS [WEB_ROOT [CERT KEY]]\n");
     return 2;
   }
   ServeOptions options;
   options.port = static_cast<std::uint16_t>(std::atoi(argv[1]));
   if (argc > 3) options.web_root = argv[3];
+  if (argc > 5) {
+    options.tls_cert = argv[4];
+    options.tls_key = argv[5];
+  }
   FakeSession session;
   HubInfo info;
   info.version = "demo";
   Hub hub(options, session, info);
   hub.drain_on_signals();
-  std::printf("http://127.0.0.1:%d\n", hub.port());
+  std::printf("%s://127.0.0.1:%d\n", options.tls_cert.empty() ? "http" : "https", hub.port());
   std::fflush(stdout);
   const std::chrono::seconds duration(std::atoi(argv[2]));
   const std::jthread walker([&](const std::stop_token& stop) { walk(hub, session, duration, stop); });

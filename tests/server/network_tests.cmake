@@ -18,8 +18,8 @@ flogmap_test(hub_tests SOURCES hub_access_test.cpp hub_http_test.cpp hub_stream_
 
 flogmap_target(client_frames SOURCES client_frames.cpp PUBLIC wire PRIVATE proto)
 flogmap_test(board_tests SOURCES tile_board_test.cpp LINK board api)
-flogmap_test(stream_tests SOURCES stream_protocol_test.cpp access_test.cpp
-             LINK client_frames synthetic_walk tile_mirror hub api)
+flogmap_test(stream_tests SOURCES stream_protocol_test.cpp access_test.cpp http_values_test.cpp
+             LINK client_frames synthetic_walk tile_mirror hub api nlohmann_json::nlohmann_json)
 
 flogmap_bench(serve_bench
   SOURCES ${PROJECT_SOURCE_DIR}/tests/bench/serve_bench.cpp ${PROJECT_SOURCE_DIR}/tests/bench/serve_load.cpp
