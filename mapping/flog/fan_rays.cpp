@@ -119,6 +119,16 @@ RowConstants row_constants(const RayModel& model, const AzimuthBins& bins) {
 
 }  // namespace
 
+void FanRays::start_bins() {
+  std::uint32_t next = 0;
+  for (int bin = 0; bin < bins_.count(); ++bin) {
+    begin_[bin] = next;
+    for (auto& counts : place_) next += std::exchange(counts[bin], next);
+  }
+  begin_.back() = next;
+  if (rays_.size() < next) rays_.resize(next);
+}
+
 void FanRays::sort(const RayModel& model, const View& view, int num_threads) {
   const Image<float>& d = view.disparity.px;
   bins_ = azimuth_bins(model, view.world_from_camera);
@@ -149,16 +159,7 @@ void FanRays::sort(const RayModel& model, const View& view, int num_threads) {
       rays_[place[bin[i]]++] = {rays.hit_m[i], rays.width_m[i], rays.run_per_rise[i], rays.end_m[i]};
     }
   };
-  const auto start_bins = [&]() noexcept {
-    std::uint32_t next = 0;
-    for (int bin = 0; bin < bins_.count(); ++bin) {
-      begin_[bin] = next;
-      for (auto& counts : place_) next += std::exchange(counts[bin], next);
-    }
-    begin_.back() = next;
-    if (rays_.size() < next) rays_.resize(next);
-  };
-  std::barrier counted(num_threads, start_bins);
+  std::barrier counted(num_threads, [this]() noexcept { start_bins(); });
   run_on_threads(num_threads, [&](int thread) {
     const int first = num_rows * thread / num_threads, last = num_rows * (thread + 1) / num_threads;
     for (int row = first; row < last; ++row) count_rays(row, place_[thread]);

@@ -31,6 +31,9 @@ class FanRays {
   [[nodiscard]] std::uint32_t size() const { return begin_.back(); }
 
  private:
+  /// Counts become places: in each bin the rays of the first thread, then of the second ...
+  void start_bins();
+
   AzimuthBins bins_;
   std::vector<std::uint32_t> begin_;  // where each bin starts; one more than there are bins
   std::vector<std::vector<std::uint32_t>>

@@ -44,8 +44,7 @@ inline std::array<double, 2> clip_to_layers(const GridSpec& grid, const Ray& ray
 /// One horizontal axis of the walk: which column, and where the ray leaves it.
 struct ColumnAxis {
   double origin, inverse, a;
-  std::int32_t cell;
-  int step;
+  std::int32_t cell, step;
 
   ColumnAxis(double origin_m, double direction, double begin_m, double cell_size_m)
       : origin(origin_m),
@@ -64,8 +63,7 @@ struct ColumnAxis {
 struct LayerAxis {
   const GridSpec& grid;
   double origin, inverse;
-  int layer;
-  int step;
+  int layer, step;
 
   LayerAxis(const GridSpec& spec, double origin_m, double direction, double begin_m)
       : grid(spec), origin(origin_m), inverse(1 / direction), layer(0), step(direction < 0 ? -1 : 1) {

@@ -32,7 +32,8 @@ inline std::pair<double, double> cross(const Box& box, const Eigen::Vector3d& or
 }
 
 /// Distance, in lengths of `direction`, to the first surface; infinite if there is none.
-inline double first_hit(const BoxScene& scene, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+inline double first_hit(const BoxScene& scene, const Eigen::Vector3d& origin,
+                        const Eigen::Vector3d& direction) {
   double nearest = cross(scene.room, origin, direction).second;
   if (!(nearest > 0)) nearest = std::numeric_limits<double>::infinity();
   for (const Box& box : scene.boxes) {
@@ -49,7 +50,8 @@ inline View seen_from(const BoxScene& scene, const StereoCamera& camera, const S
   view.disparity.px = Image<float>(camera.width_px, camera.height_px, std::nanf(""));
   for (int y = 0; y < camera.height_px; ++y) {
     for (int x = 0; x < camera.width_px; ++x) {
-      const Eigen::Vector3d pixel((x - camera.cx_px) / camera.focal_px, (y - camera.cy_px) / camera.focal_px, 1);
+      const Eigen::Vector3d pixel((x - camera.cx_px) / camera.focal_px, (y - camera.cy_px) / camera.focal_px,
+                                  1);
       const double Z = first_hit(scene, world_from_camera.translation(), world_from_camera.linear() * pixel);
       if (std::isfinite(Z)) {
         view.disparity.px.at(x, y) = static_cast<float>(camera.focal_px * camera.baseline_m / Z);
@@ -59,8 +61,8 @@ inline View seen_from(const BoxScene& scene, const StereoCamera& camera, const S
   return view;
 }
 
-/// A camera at `place` that looks along `yaw_rad` (from world x towards y), its view raised by pitch_rad above the
-/// horizon and then rolled about its axis.
+/// A camera at `place` that looks along `yaw_rad` (from world x towards y), its view raised by pitch_rad
+/// above the horizon and then rolled about its axis.
 inline SE3 looking(const Eigen::Vector3d& place, double yaw_rad, double pitch_rad = 0, double roll_rad = 0) {
   Eigen::Matrix3d world_from_level;  // camera x right, y down, z forward, looking along world x
   world_from_level << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -75,10 +77,10 @@ inline SE3 looking(const Eigen::Vector3d& place, double yaw_rad, double pitch_ra
 /// A room of 6 x 5 x 2.6 m with a table, a cupboard and a shelf.
 inline BoxScene furnished_room() {
   return {{{-3, -2.5, 0}, {3, 2.5, 2.6}},
-          {{{0.6, -0.4, 0.70}, {1.8, 0.4, 0.74}},     // table top
-           {{1.5, -2.5, 0}, {2.4, -1.9, 1.9}},        // cupboard
-           {{-3, 1.0, 1.2}, {-2.7, 2.2, 1.24}},       // shelf
-           {{-1.2, 1.3, 0}, {-0.7, 1.8, 0.45}}}};     // stool
+          {{{0.6, -0.4, 0.70}, {1.8, 0.4, 0.74}},  // table top
+           {{1.5, -2.5, 0}, {2.4, -1.9, 1.9}},     // cupboard
+           {{-3, 1.0, 1.2}, {-2.7, 2.2, 1.24}},    // shelf
+           {{-1.2, 1.3, 0}, {-0.7, 1.8, 0.45}}}};  // stool
 }
 
 /// Two boxes in a wide hall, as in the paper's first experiment but with a far horizon.
