@@ -236,6 +236,8 @@ Bytes Outbox::next_tiles(ServedMap& map, Time now) {
       round_.pop_back();
       --num_sorted_;
     }
+    // What changed meanwhile either was still to come in this round, and came as it now is, or waits.
+    if (round_.empty() && waiting_.empty()) round_revision_ = map.revision();
     message = map.tile_batch(round_revision_, round_.empty(), slots, choice_);
     count_sent(message, now);
   }
