@@ -108,6 +108,7 @@ test('a broken connection is told at once and mends itself', async ({ page }) =>
 });
 
 test('measuring gives lengths in metres', async ({ page }) => {
+  await page.setViewportSize({ width: 1280, height: 800 }); // both places lie on the map
   await openMock(page, '#v=2,3,100,0');
   await pauseMock(page);
   await page.getByRole('button', { name: 'Measure' }).click();
