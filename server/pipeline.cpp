@@ -264,6 +264,7 @@ void Pipeline::map() {
     const std::vector<TileUpdate> updates = integrator_.integrate(*item->view);
     statistics_.add(Stage::map, ms_since(start));
     if (!updates.empty()) observer_.map_changed(integrator_.revision(), updates);
+    observer_.view_mapped(*item->view);
   }
 }
 

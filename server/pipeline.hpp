@@ -29,6 +29,7 @@ class PipelineObserver {
   virtual ~PipelineObserver() = default;
   virtual void map_begins(const MapBegin& begin) = 0;  // before anything else of that map, path included
   virtual void map_changed(std::uint64_t revision, const std::vector<TileUpdate>& updates) = 0;
+  virtual void view_mapped(const View& /*view*/) {}  // its cells have just been told by map_changed()
   virtual void path_grew(const std::vector<TrajectoryEntry>& entries) = 0;
   virtual void frame_tracked(const TrackingReport& report) = 0;
   virtual void pictures_taken(const PictureReport& report) = 0;
