@@ -46,8 +46,15 @@ export interface Picture {
 export async function pixels(page: Page): Promise<Picture> {
   const box = await page.locator('.map > canvas').boundingBox();
   if (!box) throw new Error('no canvas');
-  const style = '.map > *:not(canvas) { visibility: hidden !important }';
-  return decodePng(await page.screenshot({ clip: box, style, animations: 'disabled' }));
+  // A constructed sheet: the page's content policy refuses style elements.
+  await page.evaluate(() => {
+    const sheet = new CSSStyleSheet();
+    sheet.replaceSync('body * { visibility: hidden !important } .map > canvas { visibility: visible !important }');
+    document.adoptedStyleSheets = [sheet];
+  });
+  const png = await page.screenshot({ clip: box, animations: 'disabled' });
+  await page.evaluate(() => { document.adoptedStyleSheets = []; });
+  return decodePng(png);
 }
 
 /** 8-bit RGB or RGBA without interlacing, as Chromium writes. PNG, second edition, section 9: filters. */

@@ -37,10 +37,19 @@ std::vector<SE3> drifted(const std::vector<SE3>& truth, const Eigen::Vector3d& m
   return poses;
 }
 
-View view_of(const TexturedRoom& room, const SE3& truth, const SE3& odometry, int number) {
+constexpr std::int64_t kStep_ns = 500'000'000;
+
+View view_of(const TexturedRoom& room, const SE3& truth, const SE3& odometry, int number, int segment = 0) {
   RenderedFrame frame = room.render(truth);
-  return {number * std::int64_t{500'000'000}, odometry, std::move(frame.disparity),
-          std::move(frame.pair.left)};
+  return {number * kStep_ns, odometry, std::move(frame.disparity), std::move(frame.pair.left), segment};
+}
+
+/// The corrected poses of views 0 to `count` - 1 of segment 0.
+std::vector<SE3> corrected(const LoopCorrection& correction, const std::vector<SE3>& odometry, int count) {
+  std::vector<SE3> poses;
+  for (int i = 0; i < count; ++i)
+    poses.push_back(correction.path.map_from_odometry(i * kStep_ns, 0).value() * odometry[i]);
+  return poses;
 }
 
 double rms_gap(const std::vector<SE3>& a, const std::vector<SE3>& b) {
@@ -58,17 +67,18 @@ TEST(LoopCloser, ClosesARoundTripAndTakesTheDriftAway) {
   for (int i = 0; i < static_cast<int>(truth.size()); ++i) {
     auto correction = closer.add(view_of(room, truth[i], odometry[i], i));
     if (!correction) continue;
-    EXPECT_GE(correction->view - correction->earlier_view, LoopOptions{}.min_views_apart);
-    EXPECT_EQ(correction->world_from_camera.size(), static_cast<std::size_t>(i + 1));
-    EXPECT_TRUE(
-        (correction->map_from_odometry * odometry[i]).isApprox(correction->world_from_camera.back(), 1e-9));
+    EXPECT_EQ(correction->timestamp_ns, i * kStep_ns);
+    EXPECT_GE(correction->timestamp_ns - correction->met_again_ns, LoopOptions{}.min_views_apart * kStep_ns);
+    EXPECT_EQ(correction->path.knots().size(), static_cast<std::size_t>(i + 1));
     last = std::move(correction);
   }
   ASSERT_TRUE(last);
-  const std::vector<SE3> then(truth.begin(), truth.begin() + last->view + 1);
-  const std::vector<SE3> was(odometry.begin(), odometry.begin() + last->view + 1);
-  EXPECT_LT(rms_gap(last->world_from_camera, then), 0.7 * rms_gap(was, then));
-  EXPECT_LT((last->world_from_camera.back().translation() - then.back().translation()).norm(), 0.01);
+  const int count = static_cast<int>(last->timestamp_ns / kStep_ns) + 1;
+  const std::vector<SE3> then(truth.begin(), truth.begin() + count);
+  const std::vector<SE3> was(odometry.begin(), odometry.begin() + count);
+  const std::vector<SE3> is = corrected(*last, odometry, count);
+  EXPECT_LT(rms_gap(is, then), 0.7 * rms_gap(was, then));
+  EXPECT_LT((is.back().translation() - then.back().translation()).norm(), 0.01);
 }
 
 TEST(LoopCloser, TwoRoomsThatLookTheSameAreNotMerged) {
@@ -102,14 +112,19 @@ TEST(LoopCloser, SegmentAfterALossIsJoinedWhereItBelongs) {
   const TexturedRoom room;
   const auto truth = round_trip(36, 0);
   LoopCloser closer({}, kRoomCamera);
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(closer.add(view_of(room, truth[i], truth[i], i), 0));
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(closer.add(view_of(room, truth[i], truth[i], i)));
   // Carried back to the start while lost, for ten seconds: odometry goes on from where it was last.
   const SE3 wrong = truth[19] * truth[2].inverse();
   for (int i = 2; i < 8; ++i) {
-    const auto joined = closer.add(view_of(room, truth[i], wrong * truth[i], 40 + i), 1);
+    const View view = view_of(room, truth[i], wrong * truth[i], 40 + i, 1);
+    const auto joined = closer.add(view);
     if (!joined) continue;
-    EXPECT_LT((joined->world_from_camera.back().translation() - truth[i].translation()).norm(), 0.02);
-    EXPECT_LT(angle_deg(joined->world_from_camera.back().inverse() * truth[i]), 0.5);
+    for (int k = 2; k <= i; ++k) {
+      const SE3 pose = joined->path.map_from_odometry((40 + k) * kStep_ns, 1).value() * wrong * truth[k];
+      EXPECT_LT((pose.translation() - truth[k].translation()).norm(), 0.02);
+      EXPECT_LT(angle_deg(pose.inverse() * truth[k]), 0.5);
+    }
+    EXPECT_FALSE(joined->path.map_from_odometry(view.timestamp_ns, 2)) << "nothing is known of later segments";
     return;
   }
   FAIL() << "not joined";
@@ -119,11 +134,30 @@ TEST(LoopCloser, NobodyIsCarriedFasterThanTheyCanWalk) {
   const TexturedRoom room;
   const auto truth = round_trip(36, 0);
   LoopCloser closer({}, kRoomCamera);
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(closer.add(view_of(room, truth[i], truth[i], i), 0));
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(closer.add(view_of(room, truth[i], truth[i], i)));
   SE3 far_away = SE3::Identity();
   far_away.translation() = Eigen::Vector3d(30, 0, 0);
   for (int i = 2; i < 8; ++i)
-    EXPECT_FALSE(closer.add(view_of(room, truth[i], far_away * truth[i], 18 + i), 1));
+    EXPECT_FALSE(closer.add(view_of(room, truth[i], far_away * truth[i], 18 + i, 1)));
+}
+
+TEST(LoopCloser, ForgetsTheOldestAndStillClosesLoopsWithTheRest) {
+  const TexturedRoom room;
+  const auto truth = round_trip(36, 16);
+  const auto odometry = drifted(truth, {0.001, 0.0005, 0.002}, 0.001);
+  LoopOptions options;
+  options.max_views = 46;  // the first 23 go when view 46 comes; by then it has met views 0 to 9
+  LoopCloser closer(options, kRoomCamera);
+  std::optional<LoopCorrection> last;
+  for (int i = 0; i < static_cast<int>(truth.size()); ++i) {
+    auto correction = closer.add(view_of(room, truth[i], odometry[i], i));
+    if (correction) last = std::move(correction);
+  }
+  ASSERT_TRUE(last);
+  const int count = static_cast<int>(last->timestamp_ns / kStep_ns) + 1;
+  EXPECT_EQ(last->path.knots().size(), static_cast<std::size_t>(count));
+  const std::vector<SE3> is = corrected(*last, odometry, count);
+  EXPECT_LT((is.back().translation() - truth[count - 1].translation()).norm(), 0.02);
 }
 
 TEST(PlaceIndex, FindsTheViewThatSharesPatchesAndNoOther) {
@@ -151,6 +185,9 @@ TEST(PlaceIndex, FindsTheViewThatSharesPatchesAndNoOther) {
     EXPECT_LT(found[1].votes, 5);
   }
   for (const PlaceCandidate& c : index.query(seen_again, 17, 3)) EXPECT_LT(c.view, 17);
+  index.forget_oldest(10);
+  EXPECT_EQ(index.num_views(), 20);
+  EXPECT_EQ(index.query(seen_again, index.num_views(), 1).at(0).view, 7);
 }
 
 }  // namespace
