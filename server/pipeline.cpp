@@ -164,6 +164,7 @@ void Pipeline::see() {
     if (captured->ended) {
       FrontEndResult rest = front_end_.finish();
       pass_on(rest);
+      report_status();  // nothing may follow, and the last counts must not stay behind
     }
     if (!captured->frame) continue;
     FrontEndResult result = front_end_.process(*captured->frame);
@@ -275,6 +276,7 @@ void Pipeline::begin_map(const Generation& generation) {
   } else {
     begin.tiles = options_.continued.tiles;
     begin.trajectory = options_.continued.trajectory;
+    begin.views = options_.continued.views;
   }
   begin.epoch = generation.epoch;
   begin.info = integrator_.info();
