@@ -50,6 +50,7 @@ struct FrontEnd::Parts {
     odometry.reset();
     selector.reset();
     waiting.clear();
+    segment = 0;
     world_from_odometry.reset();
     alignment = "undecided";
     if (poses) {
@@ -78,6 +79,7 @@ struct FrontEnd::Parts {
   std::unique_ptr<DisparityMatcher> matcher;
   StereoOdometry odometry;
   ViewSelector selector;
+  int segment = 0;  // of the last frame with a pose
   std::optional<GivenPoses> poses;
   std::optional<Eigen::Vector3d> up_in_camera;
   std::optional<LevelStart> level_start;
@@ -126,11 +128,14 @@ Tracking FrontEnd::Parts::track(const FrontEndResult& result) {
 void FrontEnd::Parts::place(FrontEndResult& result) {
   const Tracking& tracking = result.tracking;
   const std::int64_t timestamp_ns = result.rectified->timestamp_ns;
+  if (std::exchange(segment, tracking.segment) != tracking.segment) selector.reset();
   // A weak pose is shown but not mapped.
   const bool mapped = tracking.state == TrackingState::ok && selector.accept(tracking.odometry_from_camera);
-  Waiting frame{{timestamp_ns, tracking.odometry_from_camera, tracking.state, mapped}, std::nullopt};
+  Waiting frame{{timestamp_ns, tracking.odometry_from_camera, tracking.state, mapped, tracking.segment},
+                std::nullopt};
   if (mapped) {
-    frame.view = View{timestamp_ns, tracking.odometry_from_camera, *result.disparity, result.rectified->left};
+    frame.view = View{timestamp_ns, tracking.odometry_from_camera, *result.disparity, result.rectified->left,
+                      tracking.segment};
   }
   waiting.push_back(std::move(frame));
   if (!world_from_odometry) {

@@ -28,6 +28,7 @@ struct View {
   SE3 world_from_camera = SE3::Identity();  // rectified left camera
   DisparityImage disparity;
   Image<std::uint8_t> left;  // rectified, for the walkthrough
+  int segment = 0;           // of the odometry, see Tracking
 };
 
 enum class TrackingState : std::uint8_t {
@@ -65,6 +66,7 @@ struct TrajectoryEntry {
   SE3 world_from_camera = SE3::Identity();  // rectified left camera
   TrackingState state = TrackingState::ok;
   bool mapped = false;  // a view of this pose went into the map
+  int segment = 0;      // of the odometry, see Tracking
 };
 
 }  // namespace flogmap

@@ -49,11 +49,11 @@ double largest_move_m(const std::vector<SE3>& before, const std::vector<SE3>& af
 LoopCloser::LoopCloser(const LoopOptions& options, const StereoCamera& camera)
     : options_(options), camera_(camera) {}
 
-void LoopCloser::remember(const View& view, int segment) {
+void LoopCloser::remember(const View& view) {
   FrameFeatures features = extract_features(camera_, view.left, view.disparity, options_.corners);
   const auto scales = scales_by_nearness(features, disparity_of_scale_1(camera_));
   Remembered now{.timestamp_ns = view.timestamp_ns,
-                 .segment = segment,
+                 .segment = view.segment,
                  .world_from_camera = view.world_from_camera,
                  .path_m = 0,
                  .points = std::move(features.points),
@@ -77,14 +77,23 @@ void LoopCloser::add_odometry_edge() {
   edges_.push_back({to - 1, to, step, step_covariance(step, a.segment != b.segment), false});
 }
 
-std::optional<LoopCorrection> LoopCloser::add(const View& view, int segment) {
-  remember(view, segment);
+/// Views that may be met again: not the last few, which overlap anyway, unless they are of another segment.
+int LoopCloser::num_old_views() const {
+  const int segment = views_.back().segment;
+  const auto first = std::find_if(views_.begin(), views_.end(),
+                                  [=](const Remembered& view) { return view.segment == segment; });
+  return std::max(static_cast<int>(first - views_.begin()),
+                  static_cast<int>(views_.size()) - 1 - options_.min_views_apart);
+}
+
+std::optional<LoopCorrection> LoopCloser::add(const View& view) {
+  if (static_cast<int>(views_.size()) >= options_.max_views) forget_older_half();
+  remember(view);
   add_odometry_edge();
   std::vector<BinaryPatch> patches;
   for (const Descriptor& descriptor : views_.back().patches) patches.push_back(binary_patch(descriptor));
-  const int num_old = static_cast<int>(views_.size()) - 1 - options_.min_views_apart;
   std::optional<Meeting> best;
-  for (const PlaceCandidate& c : index_.query(patches, std::max(num_old, 0), options_.max_candidates)) {
+  for (const PlaceCandidate& c : index_.query(patches, num_old_views(), options_.max_candidates)) {
     if (c.votes < options_.min_votes) break;
     const auto meeting = meet(c.view);
     if (meeting && plausible(*meeting) && (!best || meeting->num_inliers > best->num_inliers)) best = meeting;
@@ -149,20 +158,69 @@ bool LoopCloser::confirmed(const Meeting& meeting) const {
   return (a * place - b * place).norm() <= kSamePlace_m && angle_of(a.inverse() * b) <= kSameTurn_rad;
 }
 
+/// The views stand to one another as the meeting says, as good as exactly.
+bool LoopCloser::agrees(const Meeting& meeting) const {
+  const SE3 gap = meeting.earlier_from_view.inverse() * corrected_[meeting.earlier_view].inverse() *
+                  corrected_[meeting.view];
+  return gap.translation().norm() < options_.least_change_m / 2 && angle_of(gap) < options_.least_turn_rad;
+}
+
+/// Two segments meet: the one without a place is put, as a whole, where the meeting says.
+std::vector<SE3> LoopCloser::joined(const Meeting& meeting) const {
+  const int segment = views_[meeting.view].segment, earlier = views_[meeting.earlier_view].segment;
+  const bool newer_moves = !segments_.has_place(segment);
+  const SE3 newer_by = corrected_[meeting.earlier_view] * meeting.earlier_from_view *
+                       corrected_[meeting.view].inverse();
+  const SE3 move = newer_moves ? newer_by : newer_by.inverse();
+  std::vector<SE3> poses = corrected_;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (segments_.together(views_[i].segment, newer_moves ? segment : earlier)) poses[i] = move * poses[i];
+  }
+  return poses;
+}
+
 std::optional<LoopCorrection> LoopCloser::close(const Meeting& meeting) {
   edges_.push_back(
       {meeting.earlier_view, meeting.view, meeting.earlier_from_view, with_floor(meeting.covariance), true});
   pending_.reset();
   ++num_loops_;
-  auto start = corrected_;
-  if (views_[meeting.view].segment != views_[meeting.earlier_view].segment) {
-    start.back() = corrected_[meeting.earlier_view] * meeting.earlier_from_view;
-  }
-  auto corrected = optimise_poses(std::move(start), edges_, options_.graph);
-  if (largest_move_m(corrected_, corrected) < options_.least_change_m) return std::nullopt;
+  const int segment = views_[meeting.view].segment, earlier = views_[meeting.earlier_view].segment;
+  const bool joins = !segments_.together(segment, earlier);
+  if (!joins && agrees(meeting)) return std::nullopt;
+  auto corrected = optimise_poses(joins ? joined(meeting) : corrected_, edges_, options_.graph);
+  if (!joins && largest_move_m(corrected_, corrected) < options_.least_change_m) return std::nullopt;
+  if (joins) segments_.join(segment, earlier);
   corrected_ = std::move(corrected);
-  return LoopCorrection{corrected_, corrected_.back() * views_.back().world_from_camera.inverse(),
-                        meeting.view, meeting.earlier_view, meeting.num_inliers};
+  return correction(meeting);
+}
+
+LoopCorrection LoopCloser::correction(const Meeting& meeting) const {
+  std::vector<CorrectionKnot> knots = forgotten_;
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    const Remembered& view = views_[i];
+    if (!segments_.has_place(view.segment)) continue;
+    knots.push_back({view.timestamp_ns, view.segment, corrected_[i] * view.world_from_camera.inverse()});
+  }
+  return {PathCorrection(std::move(knots)), views_[meeting.view].timestamp_ns,
+          views_[meeting.earlier_view].timestamp_ns, meeting.num_inliers};
+}
+
+void LoopCloser::forget_older_half() {
+  const int count = static_cast<int>(views_.size()) / 2;
+  for (int i = 0; i < count; ++i) {
+    if (!segments_.has_place(views_[i].segment)) continue;
+    forgotten_.push_back({views_[i].timestamp_ns, views_[i].segment,
+                          corrected_[i] * views_[i].world_from_camera.inverse()});
+  }
+  views_.erase(views_.begin(), views_.begin() + count);
+  corrected_.erase(corrected_.begin(), corrected_.begin() + count);
+  std::erase_if(edges_, [=](const PoseEdge& edge) { return edge.from < count || edge.to < count; });
+  for (PoseEdge& edge : edges_) {
+    edge.from -= count;
+    edge.to -= count;
+  }
+  index_.forget_oldest(count);
+  pending_.reset();
 }
 
 }  // namespace flogmap

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "mapping/loop/path_correction.hpp"
 #include "mapping/loop/place_index.hpp"
 #include "mapping/loop/pose_graph.hpp"
+#include "mapping/loop/segments.hpp"
 #include "mapping/odometry/frame_features.hpp"
 #include "mapping/odometry/frame_matching.hpp"
 #include "mapping/odometry/motion_solver.hpp"
@@ -32,15 +34,15 @@ struct LoopOptions {
   double drift_rad_per_m = 0.02;
   double speed_m_s = 1.5;        // and while it was lost, the camera may have moved as fast as this
   double least_change_m = 0.01;  // smaller corrections are kept for the next loop: no map is rebuilt for them
+  double least_turn_rad = 0.003;
+  int max_views = 4000;  // that are remembered; then the older half stays where it is and is forgotten
 };
 
-/// The views' poses once a loop is closed.
+/// What a closed loop says of the path.
 struct LoopCorrection {
-  std::vector<SE3> world_from_camera;  // of every view added so far, in order
-  SE3 map_from_odometry =
-      SE3::Identity();   // takes the uncorrected poses of later frames into the corrected map
-  int view = 0;          // the newest,
-  int earlier_view = 0;  // the one that it meets again
+  PathCorrection path;               // of all views so far, and so of the frames between and after them
+  std::int64_t timestamp_ns = 0;     // of the newest view,
+  std::int64_t met_again_ns = 0;     // and of the one that it meets again
   int num_inliers = 0;
 };
 
@@ -50,9 +52,10 @@ class LoopCloser {
   LoopCloser(const LoopOptions& options, const StereoCamera& camera);
 
   /// `view.world_from_camera` as odometry (and the level start) have it, uncorrected. `segment` changes when
-  /// odometry went on after a loss without knowing where (Tracking::segment). The corrected poses if this
-  /// view closes a loop that moves any view by `least_change_m` or more, else nothing.
-  [[nodiscard]] std::optional<LoopCorrection> add(const View& view, int segment = 0);
+  /// odometry went on after a loss without knowing where: a segment of its own, without a place until one of
+  /// its views meets a view of known place. A correction if this view closes a loop that moves any view by
+  /// `least_change_m` or more or gives a segment its place, else nothing.
+  [[nodiscard]] std::optional<LoopCorrection> add(const View& view);
 
   /// Closed so far, those that moved hardly anything included.
   [[nodiscard]] int num_loops() const { return num_loops_; }
@@ -73,13 +76,18 @@ class LoopCloser {
     int num_inliers = 0;
   };
 
-  void remember(const View& view, int segment);
+  void remember(const View& view);
   void add_odometry_edge();
   [[nodiscard]] std::optional<Meeting> meet(int earlier_view) const;
   [[nodiscard]] bool plausible(const Meeting& meeting) const;
   [[nodiscard]] bool confirmed(const Meeting& meeting) const;
   [[nodiscard]] SE3 implied_correction(const Meeting& meeting) const;
   [[nodiscard]] std::optional<LoopCorrection> close(const Meeting& meeting);
+  [[nodiscard]] std::vector<SE3> joined(const Meeting& meeting) const;
+  [[nodiscard]] bool agrees(const Meeting& meeting) const;
+  [[nodiscard]] int num_old_views() const;
+  [[nodiscard]] LoopCorrection correction(const Meeting& meeting) const;
+  void forget_older_half();
 
   LoopOptions options_;
   StereoCamera camera_;
@@ -87,6 +95,8 @@ class LoopCloser {
   std::vector<Remembered> views_;
   std::vector<SE3> corrected_;  // world_from_camera
   std::vector<PoseEdge> edges_;
+  Segments segments_;
+  std::vector<CorrectionKnot> forgotten_;  // where views were put that are remembered no more
   std::optional<Meeting> pending_;  // waits for a second view that says the same
   int num_loops_ = 0;
 };

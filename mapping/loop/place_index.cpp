@@ -61,13 +61,23 @@ std::uint32_t PlaceIndex::key(int table, const BinaryPatch& patch) const {
 }
 
 void PlaceIndex::add(const std::vector<BinaryPatch>& patches) {
-  const int view = num_views();
+  views_.push_back(patches);
+  enter(num_views() - 1);
+}
+
+void PlaceIndex::enter(int view) {
+  const std::vector<BinaryPatch>& patches = views_[view];
   for (std::size_t i = 0; i < patches.size(); ++i) {
     for (int t = 0; t < kNumTables; ++t) {
       tables_[t][key(t, patches[i])].push_back({view, static_cast<std::int32_t>(i)});
     }
   }
-  views_.push_back(patches);
+}
+
+void PlaceIndex::forget_oldest(int count) {
+  views_.erase(views_.begin(), views_.begin() + std::min(count, num_views()));
+  tables_ = {};
+  for (int view = 0; view < num_views(); ++view) enter(view);
 }
 
 /// One vote of this patch for every view that has one like it.

@@ -34,6 +34,9 @@ class PlaceIndex {
   /// Views are numbered 0, 1, 2 ... as they are added.
   void add(const std::vector<BinaryPatch>& patches);
 
+  /// Forgets the first `count` views; the others are numbered from 0 again.
+  void forget_oldest(int count);
+
   /// The `max_candidates` views with most votes among the first `num_views`, most votes first; ties: the
   /// older.
   [[nodiscard]] std::vector<PlaceCandidate> query(const std::vector<BinaryPatch>& patches, int num_views,
@@ -51,6 +54,7 @@ class PlaceIndex {
   };
   using Table = std::unordered_map<std::uint32_t, std::vector<Entry>>;
 
+  void enter(int view);
   [[nodiscard]] std::uint32_t key(int table, const BinaryPatch& patch) const;
   void vote(const BinaryPatch& patch, int num_views, std::vector<int>& last_voter, int voter,
             std::vector<int>& votes) const;
