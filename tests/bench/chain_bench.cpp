@@ -10,6 +10,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "camera/simulated_source.hpp"
+#include "camera/simulation/scene_json.hpp"
 #include "camera/source_spec.hpp"
 #include "server/pipeline.hpp"
 #include "tests/support/memory_source.hpp"
@@ -44,9 +46,20 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-Run run(const std::string& spec, const FrontEndOptions& options, const FlogOptions& flog) {
-  const auto recording = open_source({.spec = spec, .calibration_file = {}, .loop = false, .seed = 1});
-  auto source = std::make_unique<MemorySource>(record_frames(*recording, kFrames));
+/// The simulated room through a camera of this size and the same field of view.
+std::unique_ptr<StereoSource> room(int width_px, int height_px) {
+  Scene scene = load_scene("room");
+  const double scale = static_cast<double>(width_px) / scene.camera.width_px;
+  scene.camera.focal_px *= scale;
+  scene.camera.cx_px = (width_px - 1) / 2.0;
+  scene.camera.cy_px = (height_px - 1) / 2.0;
+  scene.camera.width_px = width_px;
+  scene.camera.height_px = height_px;
+  return std::make_unique<SimulatedSource>("sim:room", scene, 1);
+}
+
+Run run(StereoSource& recording, const FrontEndOptions& options, const FlogOptions& flog) {
+  auto source = std::make_unique<MemorySource>(record_frames(recording, kFrames));
   FrontEnd front_end(options, Rectifier(*source->calibration()), std::nullopt, std::nullopt);
   MapIntegrator integrator(flog, front_end.camera(), front_end.max_disparity_px());
   PipelineOptions pipeline_options;
@@ -81,16 +94,20 @@ void print(const char* name, const Run& result) {
 
 int bench(const std::filesystem::path& json_file) {
   const char* data = std::getenv("FLOGMAP_DATA");
-  const std::string large =
-      data != nullptr ? "euroc:" + std::string(data) + "/euroc_mh01_10hz" : "sim:room-752x480";
-  const Run wide = run(large, {}, {});
+  const std::unique_ptr<StereoSource> large =
+      data != nullptr ? open_source({.spec = "euroc:" + std::string(data) + "/euroc_mh01_10hz",
+                                     .calibration_file = {},
+                                     .loop = false,
+                                     .seed = 1})
+                      : room(752, 480);
+  const Run wide = run(*large, {}, {});
   print("752x480", wide);
   // As in the paper: 320x240, 32 disparities, every second row.
   FrontEndOptions paper;
   paper.stereo.num_disparities = 32;
   FlogOptions paper_map;
   paper_map.row_step = 2;
-  const Run small = run("sim:room-320x240", paper, paper_map);
+  const Run small = run(*room(320, 240), paper, paper_map);
   print("320x240, 32 disparities", small);
 
   nlohmann::json document = {{"fps_752x480", wide.fps}, {"cpu_ms_per_frame", wide.cpu_ms_per_frame}};

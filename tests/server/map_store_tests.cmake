@@ -15,4 +15,6 @@ flogmap_test(map_export_tests
     export_picture_test.cpp
     map_store_support.cpp
   LINK map_export flogmap_opencv ${FLOGMAP_OCTOMAP} ${FLOGMAP_OCTOMATH})
-target_include_directories(map_export_tests SYSTEM PRIVATE ${FLOGMAP_OCTOMAP_INCLUDE})
+if(FLOGMAP_TESTS)
+  target_include_directories(map_export_tests SYSTEM PRIVATE ${FLOGMAP_OCTOMAP_INCLUDE})
+endif()
