@@ -11,6 +11,12 @@ namespace {
 
 StreamClose bad_frame(std::string reason) { return {kCloseBadFrame, std::move(reason)}; }
 
+/// Resuming would save it nothing. After a kill it may even hold tiles and poses that were never stored: a
+/// continued map begins above all revisions that could have been sent (server/commands/serve.cpp).
+bool all_has_changed_since(const Resume& known, const ServedMap& map) {
+  return known.revision > 0 && known.revision < map.board().oldest_revision().value_or(0);
+}
+
 }  // namespace
 
 StreamProtocol::StreamProtocol(ServerState& state, Role role, Time now)
@@ -35,7 +41,9 @@ std::optional<StreamClose> StreamProtocol::on(const Hello& hello, Time) {
   ServedMap& map = *state_.live;
   const MapHeader header = map.header();
   send_control(encode_welcome(header, {}, name_of(role_), state_.info.version));
-  if (hello.resume && hello.resume->epoch == map.epoch()) {
+  if (hello.resume && hello.resume->epoch == map.epoch() && all_has_changed_since(*hello.resume, map)) {
+    send_control(encode_reset(header, "every tile has changed"));
+  } else if (hello.resume && hello.resume->epoch == map.epoch()) {
     outbox_.resume(*hello.resume, map);
   } else if (hello.resume && !hello.resume->epoch.empty()) {
     send_control(encode_reset(header, "another map"));

@@ -170,4 +170,12 @@ std::optional<Bounds> TileBoard::bounds() const {
   return all;
 }
 
+std::optional<std::uint64_t> TileBoard::oldest_revision() const {
+  std::optional<std::uint64_t> oldest;
+  for (const Entry& entry : entries_) {
+    if (entry.exists) oldest = std::min(oldest.value_or(entry.revision), entry.revision);
+  }
+  return oldest;
+}
+
 }  // namespace flogmap

@@ -50,6 +50,8 @@ class TileBoard {
   [[nodiscard]] Operators operators() const { return operators_; }
   [[nodiscard]] std::size_t map_bytes() const;  // of level 0's cells
   [[nodiscard]] std::optional<Bounds> bounds() const;
+  /// The least revision of an existing tile; nothing: there is none.
+  [[nodiscard]] std::optional<std::uint64_t> oldest_revision() const;
 
   /// The tiles of level 0.
   [[nodiscard]] const std::map<TileIndex, std::shared_ptr<const Tile>>& tiles() const { return tiles_; }

@@ -129,6 +129,33 @@ TEST_F(ProtocolTest, VisibleTilesComeFirst) {
   EXPECT_EQ(mirror.tiles().begin()->first.level, 0U);
 }
 
+// A viewer saw more than the store kept, then the program was killed: the continued map begins far above, with
+// every tile at the new revision, and without the tile that was lost.
+TEST_F(ProtocolTest, AfterAKillAViewerKeepsNothingThatWasNeverStored) {
+  MapBegin continued = walk_.begin("0000000000000001", "continued");
+  continued.revision = walk_.revision() + 1'000'000;
+  const auto& tiles = state_.live->board().tiles();
+  for (const auto& [index, tile] : tiles) {
+    continued.tiles.push_back({index, continued.revision,
+                               std::make_shared<const Tile>(Tile{tile->cells, continued.revision})});
+  }
+  TileMirror viewer;
+  const auto talk = [&](const Resume& known) {
+    StreamProtocol protocol(state_, Role::view, start_);
+    viewer.reconnect();
+    protocol.receive(hello_frame(known), start_);
+    protocol.receive(subscribe_frame({{{}, Planes::evidence}, {}, 0, false}), start_);
+    while (const Bytes bytes = next(protocol, start_)) viewer.take(*bytes);
+  };
+  talk({});
+  ASSERT_EQ(difference(viewer, *state_.live, {{}, Planes::evidence}), "");
+  const std::uint64_t known_revision = viewer.complete_revision();
+  continued.tiles.pop_back();
+  state_.live = std::make_unique<ServedMap>("live", std::move(continued), Operators::algebraic);
+  talk({"0000000000000001", known_revision, 0});
+  EXPECT_EQ(difference(viewer, *state_.live, {{}, Planes::evidence}), "");
+}
+
 TEST(Mailbox, KeepsTheNewestOfEachTileAndWakesOnce) {
   Mailbox mailbox;
   const auto tile = std::make_shared<const Tile>();
