@@ -51,6 +51,17 @@ class BoundedQueue {
     return value;
   }
 
+  /// The oldest value if there is one; does not wait.
+  std::optional<T> try_pop() {
+    std::unique_lock lock(mutex_);
+    if (values_.empty()) return std::nullopt;
+    std::optional<T> value(std::move(values_.front()));
+    values_.pop_front();
+    lock.unlock();
+    room_.notify_one();
+    return value;
+  }
+
   void close() {
     {
       const std::scoped_lock lock(mutex_);
@@ -58,6 +69,14 @@ class BoundedQueue {
     }
     room_.notify_all();
     filled_.notify_all();
+  }
+
+  /// Closes it and throws away what is in it: its reader has failed.
+  void abandon() {
+    close();
+    std::deque<T> thrown_away;
+    const std::scoped_lock lock(mutex_);
+    thrown_away.swap(values_);
   }
 
   /// Values that had to go to make room; always 0 with WhenFull::wait.

@@ -187,6 +187,8 @@ void add_mapping_options(OptionTable& table, Options& options) {
                            {"minmax", Operators::minmax},
                            {"lukasiewicz", Operators::lukasiewicz}},
                           "fuzzy and, or and not of the map's rules");
+  table.choice<bool>("loop-closure", options.loop_closure, {{"on", true}, {"off", false}},
+                     "recognise places seen before and correct path and map");
   table.integer("threads", "N", options.num_threads, 0, kMaxThreads,
                 "per stage; 0 = every core. Same map for any N");
 }

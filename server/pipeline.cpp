@@ -10,7 +10,10 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kFrameQueue = 2;
 constexpr std::size_t kViewQueue = 4;
 constexpr std::chrono::milliseconds kStatusEvery{500};
+constexpr std::chrono::seconds kLastCatchUp{4};  // of a server that ends
 constexpr double kNsPerSecond = 1e9;
+
+constexpr const char* kPlaceUnknown = "not found again after a loss: show a place that is mapped already";
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -32,12 +35,16 @@ Pipeline::Pipeline(const PipelineOptions& options, std::unique_ptr<StereoSource>
     : options_(options),
       source_(std::move(source)),
       front_end_(std::move(front_end)),
-      integrator_(std::move(integrator)),
+      builder_(std::move(integrator),
+               {.keep_views = options.loop_closure.has_value(), .max_view_bytes = options.max_view_bytes}),
       observer_(observer),
       control_(source_->info(), options.rate, options.loop),
       statistics_(options.statistics_window),
       frames_(kFrameQueue, source_->info().live ? WhenFull::drop_oldest : WhenFull::wait),
-      views_(kViewQueue, WhenFull::wait) {}
+      views_(kViewQueue, WhenFull::wait),
+      path_(options.continued.trajectory) {
+  if (options.loop_closure) loops_.emplace(*options.loop_closure, front_end_.camera(), source_->info().live);
+}
 
 Pipeline::~Pipeline() { stop(); }
 
@@ -45,6 +52,7 @@ void Pipeline::start() {
   threads_.emplace_back([this] { run_stage([this] { capture(); }); });
   threads_.emplace_back([this] { run_stage([this] { see(); }); });
   threads_.emplace_back([this] { run_stage([this] { map(); }); });
+  if (loops_) threads_.emplace_back([this] { run_stage([this] { loops_->run(); }); });
 }
 
 void Pipeline::stop() {
@@ -70,7 +78,8 @@ void Pipeline::run_stage(Stage stage) {
     }
     stop();
     frames_.close();
-    views_.close();
+    views_.abandon();  // nobody waits for a promise that cannot be kept
+    if (loops_) loops_->close();
   }
 }
 
@@ -164,26 +173,57 @@ void Pipeline::see() {
     if (captured->ended) {
       FrontEndResult rest = front_end_.finish();
       pass_on(rest);
+      wait_for_loops();
       report_status();  // nothing may follow, and the last counts must not stay behind
     }
     if (!captured->frame) continue;
+    correct_path();
     FrontEndResult result = front_end_.process(*captured->frame);
     report(*captured, result);
     pass_on(result);
     if (Clock::now() - status_at_ > kStatusEvery) report_status();
   }
+  wait_for_loops();
   report_status();
+  if (loops_) loops_->close();
   views_.close();
 }
 
-/// Poses to the observer, views to the map.
+/// Poses to the observer, views to the map and to where loops are found.
 void Pipeline::pass_on(FrontEndResult& result) {
+  const std::vector<TrajectoryEntry> placed = path_.add(result.path);
   {
     const std::scoped_lock lock(counters_mutex_);
     counters_.mapped_views += result.views.size();
+    unplaced_frames_ = path_.num_unplaced();
   }
-  if (!result.path.empty()) observer_.path_grew(result.path);
-  for (View& view : result.views) views_.push({.view = std::move(view), .generation = {}, .begun = {}});
+  if (!placed.empty()) observer_.path_grew(placed);
+  for (View& view : result.views) {
+    if (loops_) loops_->offer(view);
+    ForMap item;
+    item.view = std::move(view);
+    views_.push(std::move(item));
+  }
+}
+
+void Pipeline::wait_for_loops() {
+  if (loops_) loops_->wait_for_rest();
+  correct_path();
+}
+
+/// What closed loops say of the path. Odometry is never told.
+void Pipeline::correct_path() {
+  std::optional<PathCorrection> correction = loops_ ? loops_->take() : std::nullopt;
+  if (!correction) return;
+  path_.correct(*correction);
+  {
+    const std::scoped_lock lock(counters_mutex_);
+    unplaced_frames_ = path_.num_unplaced();
+  }
+  observer_.path_rewritten(path_.corrected());
+  ForMap item;
+  item.correction = std::move(correction);
+  views_.push(std::move(item));
 }
 
 /// The map thread begins the new map before this thread goes on, so that no pose of it comes too early and no
@@ -191,16 +231,27 @@ void Pipeline::pass_on(FrontEndResult& result) {
 void Pipeline::begin_generation(const Generation& generation) {
   const bool first = seen_generation_ == 0;
   seen_generation_ = generation.number;
-  if (!first) front_end_.reset();
-  auto begun = std::make_shared<std::promise<void>>();
-  std::future<void> done = begun->get_future();
-  if (views_.push({.view = {}, .generation = generation, .begun = std::move(begun)})) done.get();
+  if (!first) {
+    front_end_.reset();
+    path_ = CorrectedPath();
+  }
+  if (loops_) loops_->begin_map();
+  ForMap item;
+  item.generation = generation;
+  item.begun = std::make_shared<std::promise<void>>();
+  std::future<void> done = item.begun->get_future();
+  if (views_.push(std::move(item))) done.get();
 }
 
 void Pipeline::report(const Captured& captured, FrontEndResult& result) {
   statistics_.add(Stage::rectify, result.times.rectify_ms);
   statistics_.add(Stage::disparity, result.times.disparity_ms);
   statistics_.add(Stage::odometry, result.times.odometry_ms);
+  const std::int64_t timestamp_ns = captured.frame->timestamp_ns;
+  if (result.world_from_camera) {
+    result.world_from_camera = path_.place(timestamp_ns, result.tracking.segment, *result.world_from_camera);
+    if (!result.world_from_camera) result.tracking.reason = kPlaceUnknown;
+  }
   {
     const std::scoped_lock lock(counters_mutex_);
     ++counters_.frames;
@@ -209,7 +260,6 @@ void Pipeline::report(const Captured& captured, FrontEndResult& result) {
     counters_.warnings.clear();
     if (!result.tracking.reason.empty()) counters_.warnings.push_back(result.tracking.reason);
   }
-  const std::int64_t timestamp_ns = captured.frame->timestamp_ns;
   TrackingReport tracked;
   tracked.timestamp_ns = timestamp_ns;
   tracked.world_from_camera = result.world_from_camera;
@@ -239,8 +289,11 @@ StatusReport Pipeline::status() const {
   {
     const std::scoped_lock lock(counters_mutex_);
     report = counters_;
+    report.tracked -= unplaced_frames_;
+    report.lost += unplaced_frames_;
     skipped = skipped_;
   }
+  report.loops = loops_ ? loops_->num_loops() : 0;
   report.skipped_frames = static_cast<std::uint64_t>(skipped.count);
   report.dropped_frames = frames_.dropped();
   if (skipped.count > 0) {
@@ -255,34 +308,58 @@ StatusReport Pipeline::status() const {
 // thread
 
 void Pipeline::map() {
-  while (std::optional<ForMap> item = views_.pop()) {
-    if (item->generation) {
-      begin_map(*item->generation);
-      item->begun->set_value();
-      continue;
-    }
-    const auto start = Clock::now();
-    const std::vector<TileUpdate> updates = integrator_.integrate(*item->view);
-    statistics_.add(Stage::map, ms_since(start));
-    if (!updates.empty()) observer_.map_changed(integrator_.revision(), updates);
-    observer_.view_mapped(*item->view);
+  while (std::optional<ForMap> item = next_for_map()) take_in(*item);
+  const auto deadline = Clock::now() + kLastCatchUp;
+  while (builder_.is_behind() && (options_.end_with_source || Clock::now() < deadline)) catch_up();
+}
+
+/// As long as nothing comes, the map catches up with the newest correction; in batch that is for the end.
+std::optional<Pipeline::ForMap> Pipeline::next_for_map() {
+  while (builder_.is_behind() && !options_.end_with_source && control_.state() != SessionState::draining) {
+    catch_up();
+    if (std::optional<ForMap> item = views_.try_pop()) return item;
   }
+  return views_.pop();
+}
+
+void Pipeline::take_in(ForMap& item) {
+  if (item.generation) {
+    begin_map(*item.generation);
+    item.begun->set_value();
+  } else if (item.correction) {
+    builder_.correct(*std::move(item.correction));
+  } else {
+    const auto start = Clock::now();
+    const std::vector<TileUpdate> updates = builder_.add(*item.view);
+    statistics_.add(Stage::map, ms_since(start));
+    if (!updates.empty()) {
+      observer_.map_changed(builder_.map().revision(), updates);
+      observer_.view_mapped(*item.view);
+    }
+  }
+  const std::scoped_lock lock(counters_mutex_);
+  counters_.waiting_views = builder_.num_waiting();
+}
+
+void Pipeline::catch_up() {
+  const std::vector<TileUpdate> updates = builder_.catch_up();
+  if (!updates.empty()) observer_.map_changed(builder_.map().revision(), updates);
 }
 
 void Pipeline::begin_map(const Generation& generation) {
   MapBegin begin;
   if (generation.number > 1) {
-    integrator_.reset();
+    builder_.reset();
   } else {
     begin.tiles = options_.continued.tiles;
     begin.trajectory = options_.continued.trajectory;
     begin.views = options_.continued.views;
   }
   begin.epoch = generation.epoch;
-  begin.info = integrator_.info();
+  begin.info = builder_.map().info();
   begin.camera = front_end_.camera();  // never changes after construction
   begin.reason = generation.reason;
-  begin.revision = integrator_.revision();
+  begin.revision = builder_.map().revision();
   observer_.map_begins(begin);
 }
 

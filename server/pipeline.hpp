@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "camera/stereo_source.hpp"
-#include "mapping/flog/map_integrator.hpp"
 #include "mapping/front_end.hpp"
+#include "mapping/loop/corrected_path.hpp"
+#include "mapping/map_builder.hpp"
 #include "server/bounded_queue.hpp"
 #include "server/capture_control.hpp"
+#include "server/loop_stage.hpp"
 #include "server/publication.hpp"
 #include "server/stage_statistics.hpp"
 
@@ -31,6 +33,9 @@ class PipelineObserver {
   virtual void map_changed(std::uint64_t revision, const std::vector<TileUpdate>& updates) = 0;
   virtual void view_mapped(const View& /*view*/) {}  // its cells have just been told by map_changed()
   virtual void path_grew(const std::vector<TrajectoryEntry>& entries) = 0;
+  /// A loop closed: the whole path so far as it now is, frames that had no place before included. The tiles
+  /// follow when the map has been built anew.
+  virtual void path_rewritten(const std::vector<TrajectoryEntry>& /*path*/) {}
   virtual void frame_tracked(const TrackingReport& report) = 0;
   virtual void pictures_taken(const PictureReport& report) = 0;
   virtual void status_changed(const StatusReport& report) = 0;
@@ -49,11 +54,13 @@ struct PipelineOptions {
   bool end_with_source = false;  // batch: wait() returns when the recording has ended
   std::int64_t max_frames = 0;   // the source counts as ended after so many; 0 = never
   std::size_t statistics_window = 256;
+  std::optional<LoopOptions> loop_closure;  // nothing: loops stay open
+  std::size_t max_view_bytes = std::size_t{400} << 20U;  // of views kept to build the map anew
   ContinuedMap continued;
 };
 
-/// source -> frames[2] -> front end -> views[4] -> map -> observer. Three threads, each owning its part
-/// outright.
+/// source -> frames[2] -> front end -> views[4] -> map -> observer, and views[4] -> loops -> corrections back
+/// to where the path is kept. Four threads, each owning its part outright.
 class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, std::unique_ptr<StereoSource> source, FrontEnd front_end,
@@ -70,7 +77,7 @@ class Pipeline {
 
   [[nodiscard]] SessionControl& control() { return control_; }
   [[nodiscard]] StatusReport status() const;
-  [[nodiscard]] const MapIntegrator& integrator() const { return integrator_; }  // after wait()
+  [[nodiscard]] const MapIntegrator& integrator() const { return builder_.map(); }  // after wait()
 
  private:
   /// Frames of one generation belong to one map; a reset or a jump back in time begins the next.
@@ -86,8 +93,9 @@ class Pipeline {
     std::chrono::steady_clock::time_point at;
   };
   struct ForMap {
-    std::optional<View> view;
-    std::optional<Generation> generation;  // begin this map, then open `begun`
+    std::optional<View> view;  // as odometry has it; or ...
+    std::optional<PathCorrection> correction;
+    std::optional<Generation> generation;  // ... begin this map, then open `begun`
     std::shared_ptr<std::promise<void>> begun;
   };
 
@@ -100,8 +108,13 @@ class Pipeline {
   void begin_generation(const Generation& generation);
   void pass_on(FrontEndResult& result);
   void report(const Captured& captured, FrontEndResult& result);
+  void wait_for_loops();
+  void correct_path();
   void report_status();
   void map();
+  std::optional<ForMap> next_for_map();
+  void take_in(ForMap& item);
+  void catch_up();
   void begin_map(const Generation& generation);
   template <typename Stage>
   void run_stage(Stage stage);
@@ -109,21 +122,24 @@ class Pipeline {
   const PipelineOptions options_;
   std::unique_ptr<StereoSource> source_;
   FrontEnd front_end_;
-  MapIntegrator integrator_;
+  MapBuilder builder_;
   PipelineObserver& observer_;
   CaptureControl control_;
   StageStatistics statistics_;
   BoundedQueue<Captured> frames_;
   BoundedQueue<ForMap> views_;
+  std::optional<LoopStage> loops_;
 
   Generation generation_;              // capture thread
   std::int64_t frames_read_ = 0;       // of this generation
-  std::uint64_t seen_generation_ = 0;  // vision thread
+  std::uint64_t seen_generation_ = 0;  // vision thread, as is ...
+  CorrectedPath path_;
   std::chrono::steady_clock::time_point status_at_;
   std::uint64_t frames_at_status_ = 0;
 
   mutable std::mutex counters_mutex_;
   StatusReport counters_;
+  std::uint64_t unplaced_frames_ = 0;
   SkippedFrames skipped_;
   std::exception_ptr failure_;
   std::vector<std::jthread> threads_;

@@ -43,6 +43,7 @@ struct StatusReport {
   std::uint64_t tracked = 0;
   std::uint64_t lost = 0;
   std::uint64_t mapped_views = 0;
+  std::uint64_t waiting_views = 0;  // of stretches whose place in the map is not known yet
   std::uint64_t loops = 0;
   std::uint64_t dropped_frames = 0;  // live: the queue was full
   std::uint64_t skipped_frames = 0;  // could not be read

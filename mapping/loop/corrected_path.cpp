@@ -20,6 +20,7 @@ std::vector<TrajectoryEntry> CorrectedPath::add(const std::vector<TrajectoryEntr
     entry.world_from_camera = *pose;
     placed.push_back(entry);
   }
+  num_unplaced_ += entries.size() - placed.size();
   return placed;
 }
 
@@ -34,10 +35,12 @@ std::vector<TrajectoryEntry> CorrectedPath::corrected() const {
   return path;
 }
 
-std::size_t CorrectedPath::num_unplaced() const {
-  return static_cast<std::size_t>(std::count_if(entries_.begin(), entries_.end(), [&](const auto& entry) {
-    return !correction_.map_from_odometry(entry.timestamp_ns, entry.segment);
-  }));
+void CorrectedPath::correct(PathCorrection correction) {
+  correction_ = std::move(correction);
+  num_unplaced_ = static_cast<std::size_t>(std::count_if(
+      entries_.begin(), entries_.end(), [&](const TrajectoryEntry& entry) {
+        return !correction_.map_from_odometry(entry.timestamp_ns, entry.segment);
+      }));
 }
 
 }  // namespace flogmap

@@ -19,7 +19,7 @@ class CorrectedPath {
   /// Takes frames in order, poses as odometry has them; returns those whose place is known, corrected.
   std::vector<TrajectoryEntry> add(const std::vector<TrajectoryEntry>& entries);
 
-  void correct(PathCorrection correction) { correction_ = std::move(correction); }
+  void correct(PathCorrection correction);
 
   /// Everything whose place is known, by the newest correction.
   [[nodiscard]] std::vector<TrajectoryEntry> corrected() const;
@@ -29,12 +29,13 @@ class CorrectedPath {
                                          const SE3& world_from_camera) const;
 
   /// Frames that wait for their segment to be joined.
-  [[nodiscard]] std::size_t num_unplaced() const;
+  [[nodiscard]] std::size_t num_unplaced() const { return num_unplaced_; }
 
  private:
   std::vector<TrajectoryEntry> earlier_;
   std::vector<TrajectoryEntry> entries_;  // uncorrected
   PathCorrection correction_;
+  std::size_t num_unplaced_ = 0;
 };
 
 }  // namespace flogmap

@@ -31,6 +31,7 @@ class MapCollector final : public PipelineObserver {
   void path_grew(const std::vector<TrajectoryEntry>& entries) override {
     path_.insert(path_.end(), entries.begin(), entries.end());
   }
+  void path_rewritten(const std::vector<TrajectoryEntry>& path) override { path_ = path; }
   void frame_tracked(const TrackingReport& report) override {
     ++frames_;
     lost_ += report.tracking.state == TrackingState::lost ? 1 : 0;
@@ -65,6 +66,7 @@ nlohmann::json statistics(const StatusReport& status, const StoredMap& map, doub
                              {"lost", status.lost},
                              {"skipped", status.skipped_frames},
                              {"mapped_views", status.mapped_views},
+                             {"waiting_views", status.waiting_views},
                              {"loops", status.loops},
                              {"wall_s", wall_s},
                              {"fps", wall_s > 0 ? static_cast<double>(status.frames) / wall_s : 0},
@@ -115,6 +117,7 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   pipeline_options.end_with_source = true;
   pipeline_options.max_frames = num_frames;
   pipeline_options.statistics_window = 1U << 20U;
+  pipeline_options.loop_closure = loop_options(options);
   const auto start = Clock::now();
   Pipeline pipeline(pipeline_options, std::move(session.source), std::move(session.front_end),
                     std::move(session.integrator), collector);
@@ -140,12 +143,17 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   const StatusReport status = pipeline.status();
   const nlohmann::json document = statistics(status, map, wall_s);
   write_text(std::filesystem::path(options.out_dir) / "stats.json", document.dump(2));
-  std::printf("%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %.1f frames/s; %s\n",
+  std::printf("%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %llu loops; %.1f frames/s; %s\n",
               static_cast<unsigned long long>(status.frames), static_cast<unsigned long long>(status.tracked),
               static_cast<unsigned long long>(status.lost),
               static_cast<unsigned long long>(status.skipped_frames),
-              static_cast<unsigned long long>(status.mapped_views), document["fps"].get<double>(),
+              static_cast<unsigned long long>(status.mapped_views - status.waiting_views),
+              static_cast<unsigned long long>(status.loops), document["fps"].get<double>(),
               collector.alignment().c_str());
+  if (status.waiting_views > 0) {
+    std::printf("warning: %llu views are not in the map: their place was not recognised after a loss\n",
+                static_cast<unsigned long long>(status.waiting_views));
+  }
   for (const std::string& warning : status.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("written to %s: map.flog, fused.png, path.png, layer_*.png, ros/, trajectory.tum, stats.json\n",
               options.out_dir.c_str());

@@ -99,6 +99,11 @@ MappingSession open_session(const Options& options) {
   }
 }
 
+std::optional<LoopOptions> loop_options(const Options& options) {
+  if (!options.loop_closure || !options.poses_file.empty()) return std::nullopt;
+  return LoopOptions{};
+}
+
 std::string calibration_json(const StereoCalibration& calibration, const StereoCamera& rectified) {
   json right_from_left = json::array();
   for (int row = 0; row < 4; ++row) {

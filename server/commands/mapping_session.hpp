@@ -8,6 +8,7 @@
 #include "camera/stereo_source.hpp"
 #include "mapping/flog/map_integrator.hpp"
 #include "mapping/front_end.hpp"
+#include "mapping/loop/loop_closer.hpp"
 #include "server/options.hpp"
 
 namespace flogmap {
@@ -23,6 +24,9 @@ struct MappingSession {
 /// Opens source and calibration, reads given poses, and makes front end and map.
 /// Throws UsageError naming file, field and value if any of them cannot be used.
 MappingSession open_session(const Options& options);
+
+/// How loops are closed; nothing if they are not to be, or if the poses are given.
+std::optional<LoopOptions> loop_options(const Options& options);
 
 /// The calibration as one normalised document, for GET /calibration and the stored map.
 std::string calibration_json(const StereoCalibration& calibration, const StereoCamera& rectified);

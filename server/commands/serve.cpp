@@ -44,6 +44,11 @@ class ServeObserver final : public PipelineObserver {
       hub_->rewrite_trajectory(path_, "levelled");
     }
   }
+  void path_rewritten(const std::vector<TrajectoryEntry>& path) override {
+    path_ = path;
+    if (store_ != nullptr) store_->rewrite_trajectory(path_);
+    hub_->rewrite_trajectory(path_, "loop closed");
+  }
   void frame_tracked(const TrackingReport& report) override {
     if (report.world_from_camera) tracked_ns_ = report.timestamp_ns;
     hub_->publish_tracking(report);
@@ -183,6 +188,7 @@ int serve_source(const Options& options, HubInfo info) {
   }
   pipeline_options.rate = options.as_fast_as_possible ? 0 : 1;
   pipeline_options.loop = options.source.loop;
+  pipeline_options.loop_closure = loop_options(options);
 
   ServeObserver observer;
   Pipeline pipeline(pipeline_options, std::move(session.source), std::move(session.front_end),
