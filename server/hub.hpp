@@ -42,6 +42,9 @@ class Hub {
   /// it.
   void publish(std::uint64_t revision, std::vector<TileUpdate> tiles);
 
+  /// A mapped view that is kept for the walkthrough.
+  void publish_view(SharedView view);
+
   /// One frame's tracking. A report with a pose is appended to the trajectory; poses are also streamed live.
   void publish_tracking(TrackingReport report);
 

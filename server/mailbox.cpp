@@ -18,6 +18,7 @@ bool Mailbox::begin(MapBegin map) {
     contents.tiles.clear();
     contents.rewrite.reset();
     contents.appended.clear();
+    contents.views.clear();
     contents.tracking.reset();
   });
 }
@@ -30,6 +31,10 @@ bool Mailbox::publish(std::uint64_t revision, std::vector<TileUpdate> tiles) {
       if (newest.revision <= tile.revision) newest = std::move(tile);
     }
   });
+}
+
+bool Mailbox::publish_view(SharedView view) {
+  return merge([&](Contents& contents) { contents.views.push_back(std::move(view)); });
 }
 
 bool Mailbox::publish_tracking(TrackingReport report) {

@@ -27,6 +27,7 @@ class Mailbox {
     std::map<TileIndex, TileUpdate> tiles;
     std::optional<Rewrite> rewrite;
     std::vector<TrajectoryEntry> appended;
+    std::vector<SharedView> views;
     std::optional<TrackingReport> tracking;
     std::optional<PictureReport> pictures;
     std::optional<StatusReport> status;
@@ -37,6 +38,7 @@ class Mailbox {
   // Each returns true if nobody has been woken for the contents yet: then wake the network thread.
   bool begin(MapBegin map);
   bool publish(std::uint64_t revision, std::vector<TileUpdate> tiles);
+  bool publish_view(SharedView view);
   bool publish_tracking(TrackingReport report);
   bool publish_pictures(PictureReport report);
   bool publish_status(StatusReport report);

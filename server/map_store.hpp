@@ -12,6 +12,7 @@
 #include "camera/stereo_camera.hpp"
 #include "mapping/tile_update.hpp"
 #include "server/publication.hpp"
+#include "server/stored_view.hpp"
 
 namespace flogmap {
 
@@ -25,16 +26,7 @@ struct StoredMap {
   std::vector<TrajectoryEntry> trajectory;  // in order of frames
   std::string options_json = "{}";          // the options it was made with
   std::string calibration_json = "{}";
-};
-
-/// A mapped view as it is kept for loop closure and meshes. What `bytes` mean is the business of whoever
-/// wrote them and is told by `codec`; the store only keeps them whole.
-struct StoredView {
-  std::int64_t number = 0;  // of the view in its map, from 0
-  std::int64_t timestamp_ns = 0;
-  SE3 world_from_camera = SE3::Identity();
-  int codec = 1;
-  std::vector<std::uint8_t> bytes;
+  std::vector<SharedView> views;            // in order of number
 };
 
 /// The whole map of a file, checked to the last byte before anything is returned; nothing is written to it.

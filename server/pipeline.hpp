@@ -46,6 +46,7 @@ struct ContinuedMap {
   std::string epoch;
   std::vector<TileUpdate> tiles;
   std::vector<TrajectoryEntry> trajectory;
+  std::vector<SharedView> views;
 };
 
 struct PipelineOptions {

@@ -11,6 +11,7 @@
 #include "camera/stereo_frame.hpp"
 #include "mapping/tile_update.hpp"
 #include "mapping/view.hpp"
+#include "server/stored_view.hpp"
 
 namespace flogmap {
 
@@ -61,6 +62,7 @@ struct MapBegin {
   std::uint64_t revision = 0;
   std::vector<TileUpdate> tiles;             // of a continued map
   std::vector<TrajectoryEntry> trajectory;  // of a continued map
+  std::vector<SharedView> views;             // of a continued map
 };
 
 }  // namespace flogmap

@@ -13,6 +13,7 @@ ServedMap::ServedMap(std::string id, MapBegin begin, Operators operators)
       board_(std::move(begin.info), operators),
       trajectory_(std::move(begin.trajectory)) {
   board_.update(begin.tiles);
+  for (SharedView& view : begin.views) views_.add(std::move(view));
 }
 
 MapHeader ServedMap::header() const {

@@ -11,6 +11,7 @@
 #include "server/publication.hpp"
 #include "server/tile_board.hpp"
 #include "server/tile_pictures.hpp"
+#include "server/views/view_shelf.hpp"
 #include "server/wire.hpp"
 
 namespace flogmap {
@@ -29,6 +30,8 @@ class ServedMap {
   [[nodiscard]] TileBoard& board() { return board_; }
   [[nodiscard]] const TileBoard& board() const { return board_; }
   [[nodiscard]] TilePictures& pictures() { return pictures_; }
+  [[nodiscard]] ViewShelf& views() { return views_; }
+  [[nodiscard]] const ViewShelf& views() const { return views_; }
   [[nodiscard]] MapHeader header() const;
 
   /// Every cell at this revision, for other threads; made once per revision.
@@ -70,6 +73,7 @@ class ServedMap {
   TileBoard board_;
   TilePictures pictures_;
   std::vector<TrajectoryEntry> trajectory_;
+  ViewShelf views_;
   bool rewritten_ = false;
   std::shared_ptr<const MapSnapshot> snapshot_;  // null: not made since the last change
   std::array<Batch, 4> batches_;                 // the latest, oldest replaced first

@@ -15,6 +15,7 @@
 #include "server/export/map_files.hpp"
 #include "server/pipeline.hpp"
 #include "server/store/map_digest.hpp"
+#include "server/views/view_keeper.hpp"
 
 namespace flogmap {
 namespace {
@@ -28,6 +29,9 @@ class MapCollector final : public PipelineObserver {
 
   void map_begins(const MapBegin& begin) override { epoch_ = begin.epoch; }
   void map_changed(std::uint64_t /*revision*/, const std::vector<TileUpdate>& /*updates*/) override {}
+  void view_mapped(const View& view) override {
+    if (SharedView kept = keeper_.keep(view)) views_.push_back(std::move(kept));
+  }
   void path_grew(const std::vector<TrajectoryEntry>& entries) override {
     path_.insert(path_.end(), entries.begin(), entries.end());
   }
@@ -44,12 +48,15 @@ class MapCollector final : public PipelineObserver {
   [[nodiscard]] const std::string& epoch() const { return epoch_; }
   [[nodiscard]] const std::string& alignment() const { return alignment_; }
   [[nodiscard]] const std::vector<TrajectoryEntry>& path() const { return path_; }
+  [[nodiscard]] const std::vector<SharedView>& views() const { return views_; }
 
  private:
   ProgressBar progress_;
   std::string epoch_;
   std::string alignment_;
   std::vector<TrajectoryEntry> path_;
+  ViewKeeper keeper_;  // map thread, as are the views until it has ended
+  std::vector<SharedView> views_;
   std::int64_t frames_ = 0;
   std::int64_t lost_ = 0;
 };
@@ -137,6 +144,7 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   map.revision = snapshot.revision;
   for (const auto& [index, tile] : snapshot.tiles) map.tiles.push_back({index, tile->revision, tile});
   map.trajectory = collector.path();
+  map.views = collector.views();
   map.options_json = options_json;
   map.calibration_json = calibration_json(session.calibration, camera);
   write_map_folder(options.out_dir, map, options.serve.operators);

@@ -14,6 +14,7 @@
 #include "server/map_store.hpp"
 #include "server/pipeline.hpp"
 #include "server/store/store_writer.hpp"
+#include "server/views/view_keeper.hpp"
 
 namespace flogmap {
 namespace {
@@ -28,12 +29,19 @@ class ServeObserver final : public PipelineObserver {
 
   void map_begins(const MapBegin& begin) override {
     path_ = begin.trajectory;
+    keeper_.begin(begin.views);
     if (store_ != nullptr) store_->begin(begin);
     hub_->begin(begin);
   }
   void map_changed(std::uint64_t revision, const std::vector<TileUpdate>& updates) override {
     if (store_ != nullptr) store_->publish(updates);
     hub_->publish(revision, updates);
+  }
+  void view_mapped(const View& view) override {
+    const SharedView kept = keeper_.keep(view);
+    if (!kept) return;
+    if (store_ != nullptr) store_->put_view(kept);
+    hub_->publish_view(kept);
   }
   void path_grew(const std::vector<TrajectoryEntry>& entries) override {
     path_.insert(path_.end(), entries.begin(), entries.end());
@@ -67,6 +75,7 @@ class ServeObserver final : public PipelineObserver {
   Hub* hub_ = nullptr;
   StoreWriter* store_ = nullptr;
   std::vector<TrajectoryEntry> path_;
+  ViewKeeper keeper_;  // map thread
   std::int64_t tracked_ns_ = -1;  // newest frame whose pose the hub has
 };
 
@@ -104,7 +113,8 @@ MapBegin begin_of(const StoredMap& map, const std::string& reason) {
           .reason = reason,
           .revision = map.revision,
           .tiles = map.tiles,
-          .trajectory = map.trajectory};
+          .trajectory = map.trajectory,
+          .views = map.views};
 }
 
 /// Every *.flog of a folder, by the name of its file.
@@ -164,7 +174,7 @@ ContinuedMap continue_stored(const MapStore& store, const Options& options, Mapp
   if (session.source->info().live && !stored->trajectory.empty() && !options.first_pose) {
     session.front_end.continue_from(stored->trajectory.back().world_from_camera);
   }
-  return {stored->epoch, stored->tiles, stored->trajectory};
+  return {stored->epoch, stored->tiles, stored->trajectory, stored->views};
 }
 
 /// A store that cannot be used is bad input.

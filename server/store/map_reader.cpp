@@ -134,15 +134,17 @@ StoredView view_of(const SqliteStatement& row, const std::string& file) {
   return view;
 }
 
-void check_views(const SqliteDatabase& database, const MapSeal& seal) {
+void read_views(const SqliteDatabase& database, const MapSeal& seal, StoredMap& map) {
   SqliteStatement row =
-      database.prepare("SELECT number, timestamp_ns, pose, codec, data, checksum FROM views");
-  std::uint64_t number = 0, sum = 0;
-  for (; row.step(); ++number) {
-    view_of(row, database.file());
+      database.prepare("SELECT number, timestamp_ns, pose, codec, data, checksum FROM views ORDER BY number");
+  std::uint64_t sum = 0;
+  while (row.step()) {
+    map.views.push_back(std::make_shared<const StoredView>(view_of(row, database.file())));
     sum += static_cast<std::uint64_t>(row.integer(5));
   }
-  if (number != seal.num_views || sum != seal.views_sum) throw damaged(database.file(), "views are missing");
+  if (map.views.size() != seal.num_views || sum != seal.views_sum) {
+    throw damaged(database.file(), "views are missing");
+  }
 }
 
 }  // namespace
@@ -154,7 +156,7 @@ StoredMap read_map(SqliteDatabase& database) {
   map.revision = seal.revision;
   read_tiles(database, seal, map);
   read_trajectory(database, seal, map);
-  check_views(database, seal);
+  read_views(database, seal, map);
   return map;
 }
 

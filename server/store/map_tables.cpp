@@ -28,6 +28,7 @@ void MapTables::replace_all(const StoredMap& map) {
   resume({.revision = map.revision, .clean = seal_.clean}, map.info.grid.num_layers());
   put_tiles(map.tiles);
   append_trajectory(map.trajectory);
+  for (const SharedView& view : map.views) put_view(*view);
 }
 
 void MapTables::carry_on(const StoredMap& map) {

@@ -4,6 +4,12 @@
 #include <utility>
 
 namespace flogmap {
+namespace {
+
+/// Of views, what a disk that stands still may cost; a walkthrough can do without the others.
+constexpr std::size_t kMaxWaitingViews = 256;
+
+}  // namespace
 
 void StoreMailbox::merge(StoreMailbox later) {
   if (later.begin) {
@@ -20,6 +26,9 @@ void StoreMailbox::merge(StoreMailbox later) {
   }
   new_poses.insert(new_poses.end(), std::make_move_iterator(later.new_poses.begin()),
                    std::make_move_iterator(later.new_poses.end()));
+  for (auto& [number, view] : later.views) {
+    if (views.size() < kMaxWaitingViews || views.contains(number)) views[number] = std::move(view);
+  }
 }
 
 StoreWriter::StoreWriter(MapStore store, std::string options_json, std::string calibration_json,
@@ -54,6 +63,12 @@ void StoreWriter::append_trajectory(const std::vector<TrajectoryEntry>& entries)
 void StoreWriter::rewrite_trajectory(std::vector<TrajectoryEntry> entries) {
   StoreMailbox later;
   later.path = std::move(entries);
+  post(std::move(later));
+}
+
+void StoreWriter::put_view(SharedView view) {
+  StoreMailbox later;
+  later.views[view->number] = std::move(view);
   post(std::move(later));
 }
 
@@ -125,13 +140,14 @@ void StoreWriter::apply(const StoreMailbox& batch) {
   if (batch.begin) {
     const MapBegin& map = *batch.begin;
     store_.begin({map.epoch, map.info, map.camera, map.revision, map.tiles, map.trajectory, options_json_,
-                  calibration_json_});
+                  calibration_json_, map.views});
   }
   std::vector<TileUpdate> updates;
   for (const auto& [index, update] : batch.tiles) updates.push_back(update);
   store_.put_tiles(updates);
   if (batch.path) store_.rewrite_trajectory(*batch.path);
   store_.append_trajectory(batch.new_poses);
+  for (const auto& [number, view] : batch.views) store_.put_view(*view);
 }
 
 /// What the disk refused waits for the next attempt, under what was published since.

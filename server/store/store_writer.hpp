@@ -32,8 +32,9 @@ struct StoreMailbox {
   std::map<TileIndex, TileUpdate> tiles;
   std::optional<std::vector<TrajectoryEntry>> path;  // the whole path anew, before `new_poses`
   std::vector<TrajectoryEntry> new_poses;
+  std::map<std::int64_t, SharedView> views;
 
-  [[nodiscard]] bool empty() const { return !begin && tiles.empty() && !path && new_poses.empty(); }
+  [[nodiscard]] bool empty() const { return !begin && tiles.empty() && !path && new_poses.empty() && views.empty(); }
   /// Adds what was said later: a new map or path replaces what was before, a newer tile the older one.
   void merge(StoreMailbox later);
 };
@@ -56,6 +57,7 @@ class StoreWriter {
   void publish(const std::vector<TileUpdate>& updates);
   void append_trajectory(const std::vector<TrajectoryEntry>& entries);
   void rewrite_trajectory(std::vector<TrajectoryEntry> entries);
+  void put_view(SharedView view);
   [[nodiscard]] StoreState state() const;
 
   /// Commits now and returns when everything published before is durable, or when the disk refused it.

@@ -130,7 +130,11 @@ TEST(MapStore, ViewsComeBackAsTheyWereGiven) {
   EXPECT_EQ(view->bytes, std::vector<std::uint8_t>(100'000, 5));
   EXPECT_EQ(view->world_from_camera.matrix(), pose.matrix());
   EXPECT_FALSE(store.view(1).has_value());
-  EXPECT_NO_THROW(load_map(folder / "map.flog"));
+  const StoredMap whole = load_map(folder / "map.flog");
+  ASSERT_EQ(whole.views.size(), 2U);
+  EXPECT_EQ(whole.views[1]->number, 4);
+  save_map(folder / "copy.flog", whole);
+  EXPECT_EQ(load_map(folder / "copy.flog").views.at(0)->bytes, view->bytes);
 }
 
 TEST(MapStore, RollbackForgetsBackToTheLastCommit) {

@@ -8,6 +8,8 @@ flogmap_test(map_store_tests
     map_store_writer_test.cpp
   LINK map_store)
 
+flogmap_test(mapped_views_tests SOURCES mapped_views_test.cpp LINK mapped_views nlohmann_json::nlohmann_json)
+
 flogmap_test(map_export_tests
   SOURCES
     export_cloud_test.cpp
