@@ -83,7 +83,7 @@ void expect_same_cells(const MapSnapshot& a, const MapSnapshot& b) {
     int count = 0;
     for (const auto& [index, tile] : from.tiles) {
       const auto other = to.tiles.find(index);
-      const std::vector<Cell> unseen(tile->cells.size());
+      const TileCells unseen(tile->cells.size());
       count += tile->cells == (other == to.tiles.end() ? unseen : other->second->cells) ? 0 : 1;
     }
     return count;

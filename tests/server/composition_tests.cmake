@@ -1,8 +1,8 @@
 find_package(CLI11 REQUIRED)
 flogmap_test(composition_tests
   SOURCES bounded_queue_test.cpp capture_control_test.cpp option_table_test.cpp stage_statistics_test.cpp
-          pipeline_test.cpp
-  LINK pipeline options CLI11::CLI11)
+          pipeline_loop_test.cpp pipeline_recordings_test.cpp pipeline_test.cpp
+  LINK pipeline options trajectory CLI11::CLI11)
 
 flogmap_bench(chain_bench
   SOURCES ${PROJECT_SOURCE_DIR}/tests/bench/chain_bench.cpp

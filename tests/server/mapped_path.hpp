@@ -1,0 +1,66 @@
+// A pipeline run to its end, and what came of it.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "server/pipeline.hpp"
+
+namespace flogmap {
+
+/// Keeps the path as a viewer would have it, and what was said of every frame.
+class PathWitness final : public PipelineObserver {
+ public:
+  void map_begins(const MapBegin& /*begin*/) override {}
+  void map_changed(std::uint64_t /*revision*/, const std::vector<TileUpdate>& updates) override {
+    for (const TileUpdate& update : updates) tiles[update.index] = update.tile;
+  }
+  void path_grew(const std::vector<TrajectoryEntry>& entries) override {
+    path.insert(path.end(), entries.begin(), entries.end());
+  }
+  void path_rewritten(const std::vector<TrajectoryEntry>& whole) override {
+    path = whole;
+    ++rewrites;
+  }
+  void frame_tracked(const TrackingReport& report) override { reports.push_back(report); }
+  void pictures_taken(const PictureReport& /*report*/) override {}
+  void status_changed(const StatusReport& /*report*/) override {}
+
+  std::map<TileIndex, std::shared_ptr<const Tile>> tiles;
+  std::vector<TrajectoryEntry> path;
+  std::vector<TrackingReport> reports;
+  int rewrites = 0;
+};
+
+struct MappedPath {
+  PathWitness witness;
+  MapSnapshot map;
+  StatusReport status;
+};
+
+/// Maps a source to its end; `batch`: the map is built anew once, at the end, else whenever there is time.
+inline std::unique_ptr<MappedPath> map_path(std::unique_ptr<StereoSource> source,
+                                            const FrontEndOptions& front_end_options,
+                                            std::optional<GivenPoses> poses, const FlogOptions& flog,
+                                            std::optional<LoopOptions> loops, bool batch = true) {
+  auto mapped = std::make_unique<MappedPath>();
+  FrontEnd front_end(front_end_options, Rectifier(*source->calibration()), std::move(poses), std::nullopt);
+  MapIntegrator integrator(flog, front_end.camera(), front_end.max_disparity_px());
+  PipelineOptions options;
+  options.rate = 0;
+  options.end_with_source = batch;
+  options.loop_closure = std::move(loops);
+  Pipeline pipeline(options, std::move(source), std::move(front_end), std::move(integrator), mapped->witness);
+  pipeline.start();
+  if (!batch) {
+    while (pipeline.control().state() != SessionState::finished) std::this_thread::yield();
+    pipeline.stop();
+  }
+  pipeline.wait();
+  mapped->map = pipeline.integrator().snapshot();
+  mapped->status = pipeline.status();
+  return mapped;
+}
+
+}  // namespace flogmap

@@ -1,0 +1,143 @@
+// Loops through the whole chain: frames in, corrected path and rebuilt map out.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/mapping/odometry/textured_room.hpp"
+#include "tests/server/mapped_path.hpp"
+#include "tests/support/memory_source.hpp"
+
+namespace flogmap {
+namespace {
+
+using test::kRoomCamera;
+
+constexpr std::int64_t kStep_ns = 500'000'000;
+constexpr int kRound = 36, kRepeated = 5;  // frames
+
+Picture picture_of(const Image<std::uint8_t>& grey) {
+  return {.width = grey.width, .height = grey.height, .channels = 1, .bits = 8, .bytes = grey.pixels};
+}
+
+StereoCalibration room_calibration() {
+  CameraIntrinsics camera{.width_px = kRoomCamera.width_px,
+                          .height_px = kRoomCamera.height_px,
+                          .fx_px = kRoomCamera.focal_px,
+                          .fy_px = kRoomCamera.focal_px,
+                          .cx_px = kRoomCamera.cx_px,
+                          .cy_px = kRoomCamera.cy_px,
+                          .distortion = Distortion::none,
+                          .coefficients = {}};
+  StereoCalibration calibration;
+  calibration.left = calibration.right = camera;
+  calibration.right_from_left.translation().x() = -kRoomCamera.baseline_m;
+  calibration.rectified = true;
+  return calibration;
+}
+
+/// Once around in the room and a bit further, and the same way as bad odometry has it.
+struct RoundTrip {
+  std::shared_ptr<RecordedFrames> recorded = std::make_shared<RecordedFrames>();
+  std::vector<SE3> truth;
+  std::map<std::int64_t, SE3> odometry;
+};
+
+const RoundTrip& round_trip() {
+  static const RoundTrip made = [] {
+    RoundTrip trip;
+    const test::TexturedRoom room;
+    SE3 error = SE3::Identity();
+    error.linear() = Eigen::AngleAxisd(0.002, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    error.translation() = Eigen::Vector3d(0.001, 0.0005, 0.003);
+    trip.recorded->calibration = room_calibration();
+    for (int i = 0; i < kRound + kRepeated; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kRound;
+      trip.truth.push_back(test::camera_at({0.6 * std::sin(angle), -0.6 * std::cos(angle), 1.3}, angle));
+      const RectifiedFrame pair = room.render(trip.truth.back()).pair;
+      trip.recorded->frames.push_back({i * kStep_ns, picture_of(pair.left), picture_of(pair.right)});
+      const SE3 last = i == 0 ? trip.truth[0] : trip.odometry.at((i - 1) * kStep_ns);
+      trip.odometry[i * kStep_ns] =
+          i == 0 ? last : last * trip.truth[i - 1].inverse() * trip.truth[i] * error;
+    }
+    return trip;
+  }();
+  return made;
+}
+
+FlogOptions coarse_map(int num_threads) {
+  FlogOptions options;
+  options.grid.cell_size_m = 0.05;
+  options.num_threads = num_threads;
+  return options;
+}
+
+std::unique_ptr<MappedPath> map_round_trip(const std::map<std::int64_t, SE3>& poses, bool close_loops,
+                                           int num_threads = 2, bool batch = true) {
+  FrontEndOptions options;
+  options.views.translation_m = 0.01;  // every frame is a view
+  options.stereo.num_threads = num_threads;
+  return map_path(std::make_unique<MemorySource>(round_trip().recorded), options,
+                  GivenPoses(poses, SE3::Identity()), coarse_map(num_threads),
+                  close_loops ? std::optional(LoopOptions{}) : std::nullopt, batch);
+}
+
+/// A tile that one map lacks is unseen in the other.
+void expect_same_cells(const std::map<TileIndex, std::shared_ptr<const Tile>>& a,
+                       const std::map<TileIndex, std::shared_ptr<const Tile>>& b) {
+  for (const auto& [index, tile] : a) {
+    const auto other = b.find(index);
+    EXPECT_EQ(tile->cells, other == b.end() ? decltype(Tile::cells)(tile->cells.size()) : other->second->cells);
+  }
+}
+
+void expect_same_path(const std::vector<TrajectoryEntry>& a, const std::vector<TrajectoryEntry>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].timestamp_ns, b[i].timestamp_ns);
+    EXPECT_TRUE(a[i].world_from_camera.matrix() == b[i].world_from_camera.matrix()) << i;
+  }
+}
+
+double end_error_m(const std::vector<TrajectoryEntry>& path) {
+  return (path.back().world_from_camera.translation() - round_trip().truth.back().translation()).norm();
+}
+
+TEST(PipelineLoops, AClosedLoopTakesTheDriftOutOfPathAndMap) {
+  const auto open = map_round_trip(round_trip().odometry, false);
+  const auto closed = map_round_trip(round_trip().odometry, true);
+  EXPECT_EQ(open->status.loops, 0U);
+  EXPECT_GT(closed->status.loops, 0U);
+  EXPECT_GT(closed->witness.rewrites, 0);
+  EXPECT_EQ(closed->witness.path.size(), round_trip().truth.size());
+  EXPECT_GT(end_error_m(open->witness.path), 0.04);
+  EXPECT_LT(end_error_m(closed->witness.path), 0.5 * end_error_m(open->witness.path));
+}
+
+TEST(PipelineLoops, TheRebuiltMapIsTheOneMadeFromScratchWithTheFinalPoses) {
+  const auto closed = map_round_trip(round_trip().odometry, true);
+  ASSERT_GT(closed->status.loops, 0U);
+  std::map<std::int64_t, SE3> final_poses;
+  for (const TrajectoryEntry& entry : closed->witness.path) {
+    EXPECT_TRUE(entry.mapped);
+    final_poses[entry.timestamp_ns] = entry.world_from_camera;
+  }
+  const auto from_scratch = map_round_trip(final_poses, false);
+  expect_same_path(closed->witness.path, from_scratch->witness.path);
+  expect_same_cells(closed->map.tiles, from_scratch->map.tiles);
+  expect_same_cells(from_scratch->map.tiles, closed->map.tiles);
+}
+
+TEST(PipelineLoops, NeitherThreadsNorTheMomentOfRebuildingChangeTheResult) {
+  const auto one = map_round_trip(round_trip().odometry, true, 1);
+  for (const auto& other : {map_round_trip(round_trip().odometry, true, 2),
+                            map_round_trip(round_trip().odometry, true, 2, false)}) {
+    expect_same_path(one->witness.path, other->witness.path);
+    expect_same_cells(one->map.tiles, other->map.tiles);
+    expect_same_cells(other->map.tiles, one->map.tiles);
+    expect_same_cells(other->witness.tiles, one->map.tiles);
+    expect_same_cells(one->map.tiles, other->witness.tiles);
+  }
+}
+
+}  // namespace
+}  // namespace flogmap
