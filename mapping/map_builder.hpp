@@ -19,8 +19,9 @@ struct MapBuilderOptions {
 };
 
 /// Owns the map. Each view is integrated at once where the newest correction puts it; after a correction the
-/// views are behind until catch_up() has been called often enough. Then the map is, cell by cell, the one that
-/// the same views give from scratch with their corrected poses: law of tests/mapping/map_builder_test.cpp.
+/// views are behind until catch_up() has been called often enough. Then the map is, cell by cell, the one
+/// that the same views give from scratch with their corrected poses: law of
+/// tests/mapping/map_builder_test.cpp.
 ///
 /// Views of a segment whose place is unknown wait. Not to be shared between threads.
 class MapBuilder {

@@ -8,9 +8,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t kFrameQueue = 2;
-constexpr std::size_t kViewQueue = 4;
 constexpr std::chrono::milliseconds kStatusEvery{500};
-constexpr std::chrono::seconds kLastCatchUp{4};  // of a server that ends
 constexpr double kNsPerSecond = 1e9;
 
 constexpr const char* kPlaceUnknown = "not found again after a loss: show a place that is mapped already";
@@ -35,14 +33,14 @@ Pipeline::Pipeline(const PipelineOptions& options, std::unique_ptr<StereoSource>
     : options_(options),
       source_(std::move(source)),
       front_end_(std::move(front_end)),
-      builder_(std::move(integrator),
-               {.keep_views = options.loop_closure.has_value(), .max_view_bytes = options.max_view_bytes}),
       observer_(observer),
       control_(source_->info(), options.rate, options.loop),
       statistics_(options.statistics_window),
       frames_(kFrameQueue, source_->info().live ? WhenFull::drop_oldest : WhenFull::wait),
-      views_(kViewQueue, WhenFull::wait),
-      path_(options.continued.trajectory) {
+      map_({std::move(integrator),
+            {.keep_views = options.loop_closure.has_value(), .max_view_bytes = options.max_view_bytes}},
+           observer, statistics_, options.end_with_source,
+           [this] { return control_.state() == SessionState::draining; }) {
   if (options.loop_closure) loops_.emplace(*options.loop_closure, front_end_.camera(), source_->info().live);
 }
 
@@ -51,7 +49,7 @@ Pipeline::~Pipeline() { stop(); }
 void Pipeline::start() {
   threads_.emplace_back([this] { run_stage([this] { capture(); }); });
   threads_.emplace_back([this] { run_stage([this] { see(); }); });
-  threads_.emplace_back([this] { run_stage([this] { map(); }); });
+  threads_.emplace_back([this] { run_stage([this] { map_.run(); }); });
   if (loops_) threads_.emplace_back([this] { run_stage([this] { loops_->run(); }); });
 }
 
@@ -78,13 +76,12 @@ void Pipeline::run_stage(Stage stage) {
     }
     stop();
     frames_.close();
-    views_.abandon();  // nobody waits for a promise that cannot be kept
+    map_.abandon();  // nobody waits for a promise that cannot be kept
     if (loops_) loops_->close();
   }
 }
 
-// ------------------------------------------------------------------------------------------------ capture
-// thread
+// ---- capture thread
 
 void Pipeline::capture() {
   const std::string epoch = options_.continued.epoch;
@@ -164,8 +161,7 @@ void Pipeline::go_to(double position_s) {
   }
 }
 
-// ------------------------------------------------------------------------------------------------- vision
-// thread
+// ---- vision thread
 
 void Pipeline::see() {
   while (std::optional<Captured> captured = frames_.pop()) {
@@ -186,7 +182,7 @@ void Pipeline::see() {
   wait_for_loops();
   report_status();
   if (loops_) loops_->close();
-  views_.close();
+  map_.close();
 }
 
 /// Poses to the observer, views to the map and to where loops are found.
@@ -200,9 +196,7 @@ void Pipeline::pass_on(FrontEndResult& result) {
   if (!placed.empty()) observer_.path_grew(placed);
   for (View& view : result.views) {
     if (loops_) loops_->offer(view);
-    ForMap item;
-    item.view = std::move(view);
-    views_.push(std::move(item));
+    map_.integrate(std::move(view));
   }
 }
 
@@ -221,26 +215,26 @@ void Pipeline::correct_path() {
     unplaced_frames_ = path_.num_unplaced();
   }
   observer_.path_rewritten(path_.corrected());
-  ForMap item;
-  item.correction = std::move(correction);
-  views_.push(std::move(item));
+  map_.correct(*std::move(correction));
 }
 
-/// The map thread begins the new map before this thread goes on, so that no pose of it comes too early and no
-/// tile of the old one too late.
+/// The first generation goes on with the continued map, if there is one.
 void Pipeline::begin_generation(const Generation& generation) {
-  const bool first = seen_generation_ == 0;
-  seen_generation_ = generation.number;
-  if (!first) {
+  MapBegin begin;
+  begin.epoch = generation.epoch;
+  begin.camera = front_end_.camera();
+  begin.reason = generation.reason;
+  if (seen_generation_ == 0) {
+    begin.tiles = options_.continued.tiles;
+    begin.trajectory = options_.continued.trajectory;
+    begin.views = options_.continued.views;
+  } else {
     front_end_.reset();
-    path_ = CorrectedPath();
   }
+  seen_generation_ = generation.number;
+  path_ = CorrectedPath(begin.trajectory);
   if (loops_) loops_->begin_map();
-  ForMap item;
-  item.generation = generation;
-  item.begun = std::make_shared<std::promise<void>>();
-  std::future<void> done = item.begun->get_future();
-  if (views_.push(std::move(item))) done.get();
+  map_.begin(std::move(begin));
 }
 
 void Pipeline::report(const Captured& captured, FrontEndResult& result) {
@@ -293,6 +287,7 @@ StatusReport Pipeline::status() const {
     report.lost += unplaced_frames_;
     skipped = skipped_;
   }
+  report.waiting_views = map_.num_waiting();
   report.loops = loops_ ? loops_->num_loops() : 0;
   report.skipped_frames = static_cast<std::uint64_t>(skipped.count);
   report.dropped_frames = frames_.dropped();
@@ -302,65 +297,6 @@ StatusReport Pipeline::status() const {
   }
   report.stages = statistics_.report();
   return report;
-}
-
-// ---------------------------------------------------------------------------------------------------- map
-// thread
-
-void Pipeline::map() {
-  while (std::optional<ForMap> item = next_for_map()) take_in(*item);
-  const auto deadline = Clock::now() + kLastCatchUp;
-  while (builder_.is_behind() && (options_.end_with_source || Clock::now() < deadline)) catch_up();
-}
-
-/// As long as nothing comes, the map catches up with the newest correction; in batch that is for the end.
-std::optional<Pipeline::ForMap> Pipeline::next_for_map() {
-  while (builder_.is_behind() && !options_.end_with_source && control_.state() != SessionState::draining) {
-    catch_up();
-    if (std::optional<ForMap> item = views_.try_pop()) return item;
-  }
-  return views_.pop();
-}
-
-void Pipeline::take_in(ForMap& item) {
-  if (item.generation) {
-    begin_map(*item.generation);
-    item.begun->set_value();
-  } else if (item.correction) {
-    builder_.correct(*std::move(item.correction));
-  } else {
-    const auto start = Clock::now();
-    const std::vector<TileUpdate> updates = builder_.add(*item.view);
-    statistics_.add(Stage::map, ms_since(start));
-    if (!updates.empty()) {
-      observer_.map_changed(builder_.map().revision(), updates);
-      observer_.view_mapped(*item.view);
-    }
-  }
-  const std::scoped_lock lock(counters_mutex_);
-  counters_.waiting_views = builder_.num_waiting();
-}
-
-void Pipeline::catch_up() {
-  const std::vector<TileUpdate> updates = builder_.catch_up();
-  if (!updates.empty()) observer_.map_changed(builder_.map().revision(), updates);
-}
-
-void Pipeline::begin_map(const Generation& generation) {
-  MapBegin begin;
-  if (generation.number > 1) {
-    builder_.reset();
-  } else {
-    begin.tiles = options_.continued.tiles;
-    begin.trajectory = options_.continued.trajectory;
-    begin.views = options_.continued.views;
-  }
-  begin.epoch = generation.epoch;
-  begin.info = builder_.map().info();
-  begin.camera = front_end_.camera();  // never changes after construction
-  begin.reason = generation.reason;
-  begin.revision = builder_.map().revision();
-  observer_.map_begins(begin);
 }
 
 }  // namespace flogmap

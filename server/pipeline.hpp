@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <exception>
-#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,31 +14,14 @@
 #include "camera/stereo_source.hpp"
 #include "mapping/front_end.hpp"
 #include "mapping/loop/corrected_path.hpp"
-#include "mapping/map_builder.hpp"
 #include "server/bounded_queue.hpp"
 #include "server/capture_control.hpp"
 #include "server/loop_stage.hpp"
-#include "server/publication.hpp"
+#include "server/map_stage.hpp"
+#include "server/pipeline_observer.hpp"
 #include "server/stage_statistics.hpp"
 
 namespace flogmap {
-
-/// Who hears what the pipeline finds: the hub and the store of `serve`, the files of `map`. Calls come from
-/// the vision and the map thread and must return soon.
-class PipelineObserver {
- public:
-  virtual ~PipelineObserver() = default;
-  virtual void map_begins(const MapBegin& begin) = 0;  // before anything else of that map, path included
-  virtual void map_changed(std::uint64_t revision, const std::vector<TileUpdate>& updates) = 0;
-  virtual void view_mapped(const View& /*view*/) {}  // its cells have just been told by map_changed()
-  virtual void path_grew(const std::vector<TrajectoryEntry>& entries) = 0;
-  /// A loop closed: the whole path so far as it now is, frames that had no place before included. The tiles
-  /// follow when the map has been built anew.
-  virtual void path_rewritten(const std::vector<TrajectoryEntry>& /*path*/) {}
-  virtual void frame_tracked(const TrackingReport& report) = 0;
-  virtual void pictures_taken(const PictureReport& report) = 0;
-  virtual void status_changed(const StatusReport& report) = 0;
-};
 
 /// The map that the first frames continue; empty for a fresh one.
 struct ContinuedMap {
@@ -55,7 +37,7 @@ struct PipelineOptions {
   bool end_with_source = false;  // batch: wait() returns when the recording has ended
   std::int64_t max_frames = 0;   // the source counts as ended after so many; 0 = never
   std::size_t statistics_window = 256;
-  std::optional<LoopOptions> loop_closure;  // nothing: loops stay open
+  std::optional<LoopOptions> loop_closure;               // nothing: loops stay open
   std::size_t max_view_bytes = std::size_t{400} << 20U;  // of views kept to build the map anew
   ContinuedMap continued;
 };
@@ -78,7 +60,7 @@ class Pipeline {
 
   [[nodiscard]] SessionControl& control() { return control_; }
   [[nodiscard]] StatusReport status() const;
-  [[nodiscard]] const MapIntegrator& integrator() const { return builder_.map(); }  // after wait()
+  [[nodiscard]] const MapIntegrator& integrator() const { return map_.map(); }  // after wait()
 
  private:
   /// Frames of one generation belong to one map; a reset or a jump back in time begins the next.
@@ -93,13 +75,6 @@ class Pipeline {
     bool ended = false;                // ... the source has ended
     std::chrono::steady_clock::time_point at;
   };
-  struct ForMap {
-    std::optional<View> view;  // as odometry has it; or ...
-    std::optional<PathCorrection> correction;
-    std::optional<Generation> generation;  // ... begin this map, then open `begun`
-    std::shared_ptr<std::promise<void>> begun;
-  };
-
   void capture();
   bool read_frame();
   void restart(const std::string& reason, double position_s);
@@ -112,24 +87,18 @@ class Pipeline {
   void wait_for_loops();
   void correct_path();
   void report_status();
-  void map();
-  std::optional<ForMap> next_for_map();
-  void take_in(ForMap& item);
-  void catch_up();
-  void begin_map(const Generation& generation);
   template <typename Stage>
   void run_stage(Stage stage);
 
   const PipelineOptions options_;
   std::unique_ptr<StereoSource> source_;
   FrontEnd front_end_;
-  MapBuilder builder_;
   PipelineObserver& observer_;
   CaptureControl control_;
   StageStatistics statistics_;
   BoundedQueue<Captured> frames_;
-  BoundedQueue<ForMap> views_;
-  std::optional<LoopStage> loops_;
+  MapStage map_;                    // its queue holds 4 views, as does ...
+  std::optional<LoopStage> loops_;  // ... this one's
 
   Generation generation_;              // capture thread
   std::int64_t frames_read_ = 0;       // of this generation

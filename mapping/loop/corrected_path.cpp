@@ -37,8 +37,8 @@ std::vector<TrajectoryEntry> CorrectedPath::corrected() const {
 
 void CorrectedPath::correct(PathCorrection correction) {
   correction_ = std::move(correction);
-  num_unplaced_ = static_cast<std::size_t>(std::count_if(
-      entries_.begin(), entries_.end(), [&](const TrajectoryEntry& entry) {
+  num_unplaced_ = static_cast<std::size_t>(
+      std::count_if(entries_.begin(), entries_.end(), [&](const TrajectoryEntry& entry) {
         return !correction_.map_from_odometry(entry.timestamp_ns, entry.segment);
       }));
 }

@@ -10,7 +10,8 @@
 
 namespace flogmap {
 
-/// Frames of a segment whose place is unknown are kept, but not shown: they appear when the segment is joined.
+/// Frames of a segment whose place is unknown are kept, but not shown: they appear when the segment is
+/// joined.
 class CorrectedPath {
  public:
   /// `earlier`: a path of before, which stays as it is.

@@ -169,8 +169,8 @@ bool LoopCloser::agrees(const Meeting& meeting) const {
 std::vector<SE3> LoopCloser::joined(const Meeting& meeting) const {
   const int segment = views_[meeting.view].segment, earlier = views_[meeting.earlier_view].segment;
   const bool newer_moves = !segments_.has_place(segment);
-  const SE3 newer_by = corrected_[meeting.earlier_view] * meeting.earlier_from_view *
-                       corrected_[meeting.view].inverse();
+  const SE3 newer_by =
+      corrected_[meeting.earlier_view] * meeting.earlier_from_view * corrected_[meeting.view].inverse();
   const SE3 move = newer_moves ? newer_by : newer_by.inverse();
   std::vector<SE3> poses = corrected_;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -209,8 +209,8 @@ void LoopCloser::forget_older_half() {
   const int count = static_cast<int>(views_.size()) / 2;
   for (int i = 0; i < count; ++i) {
     if (!segments_.has_place(views_[i].segment)) continue;
-    forgotten_.push_back({views_[i].timestamp_ns, views_[i].segment,
-                          corrected_[i] * views_[i].world_from_camera.inverse()});
+    forgotten_.push_back(
+        {views_[i].timestamp_ns, views_[i].segment, corrected_[i] * views_[i].world_from_camera.inverse()});
   }
   views_.erase(views_.begin(), views_.begin() + count);
   corrected_.erase(corrected_.begin(), corrected_.begin() + count);

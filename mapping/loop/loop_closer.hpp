@@ -40,9 +40,9 @@ struct LoopOptions {
 
 /// What a closed loop says of the path.
 struct LoopCorrection {
-  PathCorrection path;               // of all views so far, and so of the frames between and after them
-  std::int64_t timestamp_ns = 0;     // of the newest view,
-  std::int64_t met_again_ns = 0;     // and of the one that it meets again
+  PathCorrection path;            // of all views so far, and so of the frames between and after them
+  std::int64_t timestamp_ns = 0;  // of the newest view,
+  std::int64_t met_again_ns = 0;  // and of the one that it meets again
   int num_inliers = 0;
 };
 
@@ -97,7 +97,7 @@ class LoopCloser {
   std::vector<PoseEdge> edges_;
   Segments segments_;
   std::vector<CorrectionKnot> forgotten_;  // where views were put that are remembered no more
-  std::optional<Meeting> pending_;  // waits for a second view that says the same
+  std::optional<Meeting> pending_;         // waits for a second view that says the same
   int num_loops_ = 0;
 };
 

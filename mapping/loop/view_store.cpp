@@ -57,8 +57,8 @@ std::vector<std::uint8_t> pack_disparity(const DisparityImage& disparity) {
   const std::unique_ptr<libdeflate_compressor, Free> compressor(libdeflate_alloc_compressor(kFast));
   if (!compressor) throw std::bad_alloc();
   std::vector<std::uint8_t> packed(libdeflate_deflate_compress_bound(compressor.get(), plain.size()));
-  packed.resize(
-      libdeflate_deflate_compress(compressor.get(), plain.data(), plain.size(), packed.data(), packed.size()));
+  packed.resize(libdeflate_deflate_compress(compressor.get(), plain.data(), plain.size(), packed.data(),
+                                            packed.size()));
   packed.shrink_to_fit();
   return packed;
 }

@@ -109,7 +109,7 @@ TEST(MapBuilder, ARebuiltMapIsTheOneMadeFromScratchWithTheFinalPoses) {
       take_in(viewer, builder.add(view));
       if (i == 6) builder.correct(early);
       if (i >= 6 && i % 2 == 0) take_in(viewer, builder.catch_up());  // a slice now and then
-      if (i == 10) builder.correct(late);                           // while the first rebuild goes on
+      if (i == 10) builder.correct(late);                             // while the first rebuild goes on
     }
     EXPECT_TRUE(builder.is_behind());
     while (builder.is_behind()) take_in(viewer, builder.catch_up());
@@ -151,7 +151,9 @@ TEST(MapBuilder, ViewsThatAreNoLongerKeptStayWhereTheyWere) {
   MapIntegrator expected = empty_map();
   for (std::size_t i = 0; i < views.size(); ++i) {
     const bool kept = i + 5 >= views.size();
-    if (kept) views[i].world_from_camera = *correction.map_from_odometry(views[i].timestamp_ns, 0) * views[i].world_from_camera;
+    if (kept)
+      views[i].world_from_camera =
+          *correction.map_from_odometry(views[i].timestamp_ns, 0) * views[i].world_from_camera;
     round_disparity(views[i].disparity);
     expected.integrate(views[i]);
   }

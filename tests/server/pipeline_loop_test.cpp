@@ -86,7 +86,8 @@ void expect_same_cells(const std::map<TileIndex, std::shared_ptr<const Tile>>& a
                        const std::map<TileIndex, std::shared_ptr<const Tile>>& b) {
   for (const auto& [index, tile] : a) {
     const auto other = b.find(index);
-    EXPECT_EQ(tile->cells, other == b.end() ? decltype(Tile::cells)(tile->cells.size()) : other->second->cells);
+    EXPECT_EQ(tile->cells,
+              other == b.end() ? decltype(Tile::cells)(tile->cells.size()) : other->second->cells);
   }
 }
 

@@ -124,7 +124,8 @@ TEST(LoopCloser, SegmentAfterALossIsJoinedWhereItBelongs) {
       EXPECT_LT((pose.translation() - truth[k].translation()).norm(), 0.02);
       EXPECT_LT(angle_deg(pose.inverse() * truth[k]), 0.5);
     }
-    EXPECT_FALSE(joined->path.map_from_odometry(view.timestamp_ns, 2)) << "nothing is known of later segments";
+    EXPECT_FALSE(joined->path.map_from_odometry(view.timestamp_ns, 2))
+        << "nothing is known of later segments";
     return;
   }
   FAIL() << "not joined";

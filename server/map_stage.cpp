@@ -1,0 +1,92 @@
+#include "server/map_stage.hpp"
+
+#include <chrono>
+#include <utility>
+
+namespace flogmap {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::size_t kQueue = 4;
+constexpr std::chrono::seconds kLastCatchUp{4};  // of a server that ends
+
+}  // namespace
+
+MapStage::MapStage(MapBuilder builder, PipelineObserver& observer, StageStatistics& statistics, bool batch,
+                   std::function<bool()> ending)
+    : builder_(std::move(builder)),
+      observer_(observer),
+      statistics_(statistics),
+      batch_(batch),
+      ending_(std::move(ending)),
+      items_(kQueue, WhenFull::wait) {}
+
+void MapStage::integrate(View view) {
+  Item item;
+  item.view = std::move(view);
+  items_.push(std::move(item));
+}
+
+void MapStage::correct(PathCorrection correction) {
+  Item item;
+  item.correction = std::move(correction);
+  items_.push(std::move(item));
+}
+
+void MapStage::begin(MapBegin map) {
+  Item item;
+  item.begin = std::move(map);
+  item.begun = std::make_shared<std::promise<void>>();
+  std::future<void> done = item.begun->get_future();
+  if (items_.push(std::move(item))) done.get();
+}
+
+void MapStage::run() {
+  while (std::optional<Item> item = next()) take_in(*item);
+  const auto deadline = Clock::now() + kLastCatchUp;
+  while (builder_.is_behind() && (batch_ || Clock::now() < deadline)) catch_up();
+}
+
+/// As long as nothing comes, the map catches up with the newest correction; in batch that is for the end.
+std::optional<MapStage::Item> MapStage::next() {
+  while (builder_.is_behind() && !batch_ && !ending_()) {
+    catch_up();
+    if (std::optional<Item> item = items_.try_pop()) return item;
+  }
+  return items_.pop();
+}
+
+void MapStage::take_in(Item& item) {
+  if (item.begin) {
+    begin_now(*item.begin);
+    item.begun->set_value();
+  } else if (item.correction) {
+    builder_.correct(*std::move(item.correction));
+  } else {
+    take_in(*item.view);
+  }
+  num_waiting_ = builder_.num_waiting();
+}
+
+void MapStage::take_in(View& view) {
+  const auto start = Clock::now();
+  const std::vector<TileUpdate> updates = builder_.add(view);
+  statistics_.add(Stage::map, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+  if (updates.empty()) return;
+  observer_.map_changed(builder_.map().revision(), updates);
+  observer_.view_mapped(view);
+}
+
+void MapStage::begin_now(MapBegin& map) {
+  if (std::exchange(begun_, true)) builder_.reset();
+  map.info = builder_.map().info();
+  map.revision = builder_.map().revision();
+  observer_.map_begins(map);
+}
+
+void MapStage::catch_up() {
+  const std::vector<TileUpdate> updates = builder_.catch_up();
+  if (!updates.empty()) observer_.map_changed(builder_.map().revision(), updates);
+}
+
+}  // namespace flogmap

@@ -1,0 +1,67 @@
+// The map thread: takes views and corrections, tells of changed tiles.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+
+#include "mapping/map_builder.hpp"
+#include "server/bounded_queue.hpp"
+#include "server/pipeline_observer.hpp"
+#include "server/stage_statistics.hpp"
+
+namespace flogmap {
+
+/// run() and map() belong to the map thread, everything else to the thread that sees the frames.
+class MapStage {
+ public:
+  /// `batch`: the map catches up with corrections once, at the end, else whenever no view waits. `ending`
+  /// says that the server shuts down: then catching up is cut short.
+  MapStage(MapBuilder builder, PipelineObserver& observer, StageStatistics& statistics, bool batch,
+           std::function<bool()> ending);
+
+  void integrate(View view);
+  void correct(PathCorrection correction);
+
+  /// Another map begins, the first one with what the builder holds. Returns when it has begun, so that no
+  /// pose of it comes too early and no tile of the one before too late. Info and revision of `map` are filled
+  /// in.
+  void begin(MapBegin map);
+
+  void run();
+  void close() { items_.close(); }
+  void abandon() { items_.abandon(); }
+
+  /// Views that wait for their place. From any thread.
+  [[nodiscard]] std::uint64_t num_waiting() const { return num_waiting_; }
+
+  [[nodiscard]] const MapIntegrator& map() const { return builder_.map(); }
+
+ private:
+  struct Item {
+    std::optional<View> view;  // as odometry has it; or ...
+    std::optional<PathCorrection> correction;
+    std::optional<MapBegin> begin;  // ... begin this map, then open `begun`
+    std::shared_ptr<std::promise<void>> begun;
+  };
+
+  std::optional<Item> next();
+  void take_in(Item& item);
+  void take_in(View& view);
+  void begin_now(MapBegin& map);
+  void catch_up();
+
+  MapBuilder builder_;
+  PipelineObserver& observer_;
+  StageStatistics& statistics_;
+  const bool batch_;
+  const std::function<bool()> ending_;
+  bool begun_ = false;
+  BoundedQueue<Item> items_;
+  std::atomic<std::uint64_t> num_waiting_ = 0;
+};
+
+}  // namespace flogmap
