@@ -13,8 +13,10 @@ Image<std::uint8_t> to_grey(const Picture& picture) {
   if (picture.channels == 3) cv::cvtColor(view, grey, cv::COLOR_BGR2GRAY);
   Image<std::uint8_t> out(picture.width, picture.height);
   cv::Mat target(out.height, out.width, CV_8U, out.pixels.data());
-  if (picture.bits == 16) grey.convertTo(target, CV_8U, 1.0 / 256);
-  else grey.copyTo(target);
+  if (picture.bits == 16)
+    grey.convertTo(target, CV_8U, 1.0 / 256);
+  else
+    grey.copyTo(target);
   return out;
 }
 

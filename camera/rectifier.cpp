@@ -8,26 +8,13 @@
 #include <stdexcept>
 
 #include "camera/calibration/distortion.hpp"
+#include "camera/grey.hpp"
+#include "camera/rectifying_rotations.hpp"
 
 namespace flogmap {
 namespace {
 
 constexpr double kMaxHalfWidth = 1.428;  // tan(55 degrees)
-
-struct Rotations {
-  Eigen::Matrix3d rectified_from_left, rectified_from_right;
-};
-
-/// Each camera takes half of the rotation between them, then both turn until the baseline is the x axis
-/// (Bouguet's method: the two turns, and so the loss at the borders, are as small as they can be).
-Rotations rectifying_rotations(const Eigen::Isometry3d& right_from_left) {
-  const Eigen::AngleAxisd whole(right_from_left.linear());
-  const Eigen::Matrix3d half = Eigen::AngleAxisd(whole.angle() / 2, whole.axis()).toRotationMatrix();
-  const Eigen::Vector3d left_in_middle = half.transpose() * right_from_left.translation();
-  const Eigen::Matrix3d onto_x =
-      Eigen::Quaterniond::FromTwoVectors(-left_in_middle, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  return {onto_x * half, onto_x * half.transpose()};
-}
 
 /// A rectangle of the plane z = 1 of the rectified camera.
 struct Window {
@@ -123,17 +110,6 @@ StereoCamera camera_as_it_is(const StereoCalibration& c) {
           c.left.width_px, c.left.height_px};
 }
 
-cv::Mat grey_8_bit(const Picture& picture) {
-  const int depth = picture.bits == 16 ? CV_16U : CV_8U;
-  // OpenCV has no read-only view; the matrix is only read.
-  cv::Mat view(picture.height, picture.width, CV_MAKETYPE(depth, picture.channels),
-               const_cast<std::uint8_t*>(picture.bytes.data()));
-  cv::Mat grey = view;
-  if (picture.channels == 3) cv::cvtColor(view, grey, cv::COLOR_BGR2GRAY);
-  if (picture.bits == 16) grey.convertTo(grey, CV_8U, 1.0 / 256);
-  return grey;
-}
-
 }  // namespace
 
 struct Rectifier::Maps {
@@ -154,7 +130,8 @@ struct Rectifier::Maps {
     cv::convertMaps(x, y, whole_px, fraction, CV_16SC2);
   }
 
-  Image<std::uint8_t> apply(const cv::Mat& grey) const {
+  Image<std::uint8_t> apply(Image<std::uint8_t>& raw) const {
+    const cv::Mat grey(raw.height, raw.width, CV_8U, raw.pixels.data());
     Image<std::uint8_t> out(whole_px.cols, whole_px.rows);
     cv::Mat target(out.height, out.width, CV_8U, out.pixels.data());
     cv::remap(grey, target, whole_px, fraction, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
@@ -171,7 +148,7 @@ Rectifier::Rectifier(const StereoCalibration& calibration) {
     right_ = std::make_unique<Maps>(calibration.right, Eigen::Matrix3d::Identity(), camera_);
     return;
   }
-  const Rotations rotations = rectifying_rotations(calibration.right_from_left);
+  const RectifyingRotations rotations = rectifying_rotations(calibration.right_from_left);
   Window window;
   shrink_to_picture(window, calibration.left, rotations.rectified_from_left);
   shrink_to_picture(window, calibration.right, rotations.rectified_from_right);
@@ -197,11 +174,8 @@ RectifiedFrame Rectifier::rectify(const StereoFrame& frame) const {
                                " px does not fit the calibration, which is for " +
                                std::to_string(camera_.width_px) + "x" + std::to_string(camera_.height_px));
     }
-    const cv::Mat grey = grey_8_bit(picture);
-    if (maps) return maps->apply(grey);
-    Image<std::uint8_t> out(picture.width, picture.height);
-    grey.copyTo(cv::Mat(out.height, out.width, CV_8U, out.pixels.data()));
-    return out;
+    Image<std::uint8_t> grey = to_grey(picture);
+    return maps ? maps->apply(grey) : grey;
   };
   return {frame.timestamp_ns, one(frame.left, left_), one(frame.right, right_)};
 }

@@ -24,6 +24,7 @@ constexpr Command kCommands[] = {
     {"merge", "make one map of two", flogmap::add_merge},
     {"simulate", "render a recording with exact ground truth", flogmap::add_simulate},
     {"record", "write what a source delivers as a recording", flogmap::add_record},
+    {"calibrate", "stereo calibration from pictures of a board, with a verdict", flogmap::add_calibrate},
 };
 
 int complain(const std::string& message, int exit_code) {

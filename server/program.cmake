@@ -12,6 +12,7 @@ flogmap_target(pipeline SOURCES capture_control.cpp loop_stage.cpp map_stage.cpp
 flogmap_target(flogmap EXECUTABLE
   SOURCES
     main.cpp
+    commands/calibrate.cpp
     commands/disparity.cpp
     commands/evaluate.cpp
     commands/evaluate_map.cpp
@@ -24,6 +25,6 @@ flogmap_target(flogmap EXECUTABLE
     commands/record.cpp
     commands/serve.cpp
     commands/simulate.cpp
-  PRIVATE options pipeline hub map_store map_export trajectory CLI11::CLI11 nlohmann_json::nlohmann_json)
+  PRIVATE board_calibration options pipeline hub map_store map_export trajectory CLI11::CLI11 nlohmann_json::nlohmann_json)
 target_compile_definitions(flogmap PRIVATE FLOGMAP_VERSION="${PROJECT_VERSION}")
 set_target_properties(flogmap PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})

@@ -8,7 +8,8 @@ namespace {
 std::vector<Eigen::Vector3d> lattice(int columns, int rows, double pitch_m) {
   std::vector<Eigen::Vector3d> points;
   for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) points.emplace_back(column * pitch_m, row * pitch_m, 0.0);
+    for (int column = 0; column < columns; ++column)
+      points.emplace_back(column * pitch_m, row * pitch_m, 0.0);
   }
   return points;
 }
@@ -19,7 +20,8 @@ std::vector<Eigen::Vector3d> tag_corners(const BoardSpec& spec) {
   const double side = spec.square_m;
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3d& at : lattice(spec.columns, spec.rows, side * (1 + spec.tag_gap_share))) {
-    for (const auto& [x, y] : {std::pair(0.0, side), std::pair(side, side), std::pair(side, 0.0), std::pair(0.0, 0.0)})
+    for (const auto& [x, y] :
+         {std::pair(0.0, side), std::pair(side, side), std::pair(side, 0.0), std::pair(0.0, 0.0)})
       points.emplace_back(at.x() + x, at.y() + y, 0.0);
   }
   return points;
@@ -50,7 +52,8 @@ void check(const BoardSpec& spec) {
   const std::string counts = std::to_string(least) + " to " + std::to_string(kMost);
   require(spec.columns >= least && spec.columns <= kMost, "board: columns", spec.columns, counts);
   require(spec.rows >= least && spec.rows <= kMost, "board: rows", spec.rows, counts);
-  require(spec.square_m >= 1e-4 && spec.square_m <= 10, "side of a square in metres", spec.square_m, "0.0001 to 10");
+  require(spec.square_m >= 1e-4 && spec.square_m <= 10, "side of a square in metres", spec.square_m,
+          "0.0001 to 10");
   require(spec.marker_share > 0.1 && spec.marker_share < 1, "marker / square", spec.marker_share, "0.1 to 1");
   require(spec.tag_gap_share > 0 && spec.tag_gap_share <= 2, "gap / tag", spec.tag_gap_share, "above 0 to 2");
 }

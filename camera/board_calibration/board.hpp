@@ -18,7 +18,7 @@ struct BoardSpec {
   BoardPattern pattern = BoardPattern::chessboard;
   int columns = 9;
   int rows = 6;
-  double square_m = 0.025;    // side of a square; of a tag without its white border for a grid of tags
+  double square_m = 0.025;     // side of a square; of a tag without its white border for a grid of tags
   double marker_share = 0.75;  // ChArUco: side of a marker / side of a square
   double tag_gap_share = 0.3;  // AprilTag grid: gap between tags / side of a tag (Kalibr's tagSpacing)
   std::string dictionary{};    // ChArUco: "4X4_50", ...; empty: found out from the pictures
@@ -29,8 +29,8 @@ struct BoardSpec {
 
 /// The points that one picture shows.
 struct BoardView {
-  std::vector<int> points;                // numbers of board_points()
-  std::vector<Eigen::Vector2d> pixels;    // where they are in the picture
+  std::vector<int> points;              // numbers of board_points()
+  std::vector<Eigen::Vector2d> pixels;  // where they are in the picture
   [[nodiscard]] bool empty() const { return points.empty(); }
 };
 

@@ -48,10 +48,13 @@ BoardSighting find_chessboard(const BoardSpec& spec, const Picture8& picture) {
   Points corners;
   const cv::Size size(spec.columns, spec.rows);
   const int flags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
-  const bool found = cv::findChessboardCorners(view_of(picture), size, corners, flags | cv::CALIB_CB_FAST_CHECK) ||
-                     cv::findChessboardCornersSB(view_of(picture), size, corners, cv::CALIB_CB_NORMALIZE_IMAGE);
-  if (!found) return {{}, "no chessboard of " + std::to_string(spec.columns) + "x" + std::to_string(spec.rows) +
-                              " inner corners in full view"};
+  const bool found =
+      cv::findChessboardCorners(view_of(picture), size, corners, flags | cv::CALIB_CB_FAST_CHECK) ||
+      cv::findChessboardCornersSB(view_of(picture), size, corners, cv::CALIB_CB_NORMALIZE_IMAGE);
+  if (!found)
+    return {{},
+            "no chessboard of " + std::to_string(spec.columns) + "x" + std::to_string(spec.rows) +
+                " inner corners in full view"};
   refine(picture, corners, reach_px(smallest_step_px(corners, spec.columns) / 2));
   BoardSighting sighting;
   for (const cv::Point2f& corner : corners) {
@@ -78,8 +81,10 @@ std::optional<MarkerLayout> fitting_layout(const BoardSpec& spec, const std::vec
   for (MarkerLayout& layout : possible_layouts(spec)) {
     const std::optional<double> error = misfit(layout, markers);
     if (!error) return std::nullopt;
-    if (*error < kFits) best = std::move(layout), ++fitting;
-    else if (*error < kDoesNot) ++doubtful;
+    if (*error < kFits)
+      best = std::move(layout), ++fitting;
+    else if (*error < kDoesNot)
+      ++doubtful;
   }
   return fitting == 1 && doubtful == 0 ? best : std::nullopt;
 }
@@ -95,7 +100,8 @@ std::size_t upright_corner(const MarkerLayout& layout, std::size_t id, std::size
 std::size_t upright_tag(const BoardSpec& spec, const MarkerLayout& layout, std::size_t id) {
   const double pitch = spec.square_m * (1 + spec.tag_gap_share);
   const Eigen::Vector2d centre = (layout.corners_m[id][0] + layout.corners_m[id][2]) / 2;
-  const auto column = static_cast<std::size_t>(centre.x() / pitch), row = static_cast<std::size_t>(centre.y() / pitch);
+  const auto column = static_cast<std::size_t>(centre.x() / pitch),
+             row = static_cast<std::size_t>(centre.y() / pitch);
   return row * static_cast<std::size_t>(spec.columns) + column;
 }
 
@@ -121,13 +127,14 @@ BoardSighting tag_view(const BoardSpec& spec, const MarkerLayout& layout, int bo
 }
 
 /// Where the markers around a corner of squares say that it is.
-std::optional<cv::Point2f> predict_corner(const Eigen::Vector2d& corner_m, double square_m, const MarkerLayout& layout,
-                                          const std::vector<Marker>& markers) {
+std::optional<cv::Point2f> predict_corner(const Eigen::Vector2d& corner_m, double square_m,
+                                          const MarkerLayout& layout, const std::vector<Marker>& markers) {
   Points board, picture;
   for (const Marker& marker : markers) {
     const auto& corners = layout.corners_m[static_cast<std::size_t>(marker.id)];
     const Eigen::Vector2d centre = (corners[0] + corners[2]) / 2;
-    if ((centre - corner_m).cwiseAbs().maxCoeff() > 0.75 * square_m) continue;  // not one of those that touch it
+    if ((centre - corner_m).cwiseAbs().maxCoeff() > 0.75 * square_m)
+      continue;  // not one of those that touch it
     for (std::size_t k = 0; k < 4; ++k) {
       board.emplace_back(static_cast<float>(corners[k].x()), static_cast<float>(corners[k].y()));
       picture.emplace_back(static_cast<float>(marker.corners_px[k].x()),
@@ -143,8 +150,8 @@ std::optional<cv::Point2f> predict_corner(const Eigen::Vector2d& corner_m, doubl
   return predicted[0];
 }
 
-BoardSighting charuco_view(const BoardSpec& spec, const MarkerLayout& layout, const std::vector<Marker>& markers,
-                           const Picture8& picture) {
+BoardSighting charuco_view(const BoardSpec& spec, const MarkerLayout& layout,
+                           const std::vector<Marker>& markers, const Picture8& picture) {
   double smallest_px = std::numeric_limits<double>::max();
   for (const Marker& marker : markers) smallest_px = std::min(smallest_px, side_px(marker));
   const double margin_px = smallest_px * (1 - spec.marker_share) / (2 * spec.marker_share);
@@ -154,7 +161,8 @@ BoardSighting charuco_view(const BoardSpec& spec, const MarkerLayout& layout, co
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto corner = predict_corner(points[i].head<2>(), spec.square_m, layout, markers);
     const double rim = 4;  // px; nearer to the border there is no window to refine in
-    if (!corner || corner->x < rim || corner->y < rim || corner->x > static_cast<float>(picture.width - 1 - rim) ||
+    if (!corner || corner->x < rim || corner->y < rim ||
+        corner->x > static_cast<float>(picture.width - 1 - rim) ||
         corner->y > static_cast<float>(picture.height - 1 - rim))
       continue;
     corners.push_back(*corner);
@@ -188,8 +196,8 @@ int num_markers(const BoardSpec& spec) {
 }
 
 /// Markers of this board alone.
-std::vector<Marker> find_own_markers(const BoardSpec& spec, const Picture8& picture, const std::string& dictionary,
-                                     int border_bits) {
+std::vector<Marker> find_own_markers(const BoardSpec& spec, const Picture8& picture,
+                                     const std::string& dictionary, int border_bits) {
   std::vector<Marker> markers = find_markers(picture, dictionary, border_bits);
   std::erase_if(markers, [&](const Marker& marker) { return marker.id >= num_markers(spec); });
   return markers;

@@ -40,17 +40,21 @@ double& parameter(CameraIntrinsics& camera, int index) {
   }
 }
 
-int num_intrinsics(const CameraIntrinsics& camera) { return 4 + static_cast<int>(camera.coefficients.size()); }
+int num_intrinsics(const CameraIntrinsics& camera) {
+  return 4 + static_cast<int>(camera.coefficients.size());
+}
 
 Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Eigen::Matrix<double, kPose, 1>& by) {
   Eigen::Isometry3d result = pose;
   const Eigen::Vector3d w = by.head<3>();
-  if (w.norm() > 0) result.linear() = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix() * pose.linear();
+  if (w.norm() > 0)
+    result.linear() = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix() * pose.linear();
   result.translation() += by.tail<3>();
   return result;
 }
 
-/// A camera with each parameter changed up and down in turn, and by how much; central differences need no more.
+/// A camera with each parameter changed up and down in turn, and by how much; central differences need no
+/// more.
 struct Variations {
   std::vector<std::array<CameraIntrinsics, 2>> cameras;
   std::vector<double> step;
@@ -67,7 +71,8 @@ struct Variations {
 };
 
 /// d pixel / d point in the camera's frame, by central differences.
-std::optional<Eigen::Matrix<double, 2, 3>> point_derivative(const CameraIntrinsics& camera, const Eigen::Vector3d& p) {
+std::optional<Eigen::Matrix<double, 2, 3>> point_derivative(const CameraIntrinsics& camera,
+                                                            const Eigen::Vector3d& p) {
   const double h = 1e-6 * p.norm();
   Eigen::Matrix<double, 2, 3> J;
   for (int axis = 0; axis < 3; ++axis) {
@@ -100,7 +105,9 @@ struct Order {
         size(2 * intrinsics + kPose + kPose * static_cast<int>(bundle.left_from_board.size())) {}
   [[nodiscard]] int camera(bool right) const { return right ? intrinsics : 0; }
   [[nodiscard]] int right_from_left() const { return 2 * intrinsics; }
-  [[nodiscard]] int pair(std::size_t index) const { return 2 * intrinsics + kPose * (1 + static_cast<int>(index)); }
+  [[nodiscard]] int pair(std::size_t index) const {
+    return 2 * intrinsics + kPose * (1 + static_cast<int>(index));
+  }
 };
 
 struct NormalEquations {
@@ -143,7 +150,9 @@ std::optional<Linearised> linearise(const Bundle& bundle, const std::array<Varia
 }
 
 /// Weight of Huber's loss for a residual of this length.
-double huber_weight(double length_px, double huber_px) { return length_px <= huber_px ? 1 : huber_px / length_px; }
+double huber_weight(double length_px, double huber_px) {
+  return length_px <= huber_px ? 1 : huber_px / length_px;
+}
 double huber_cost(double length_px, double huber_px) {
   return length_px <= huber_px ? length_px * length_px : huber_px * (2 * length_px - huber_px);
 }
@@ -216,8 +225,8 @@ std::optional<Eigen::Vector2d> predict(const Bundle& bundle, const Observation& 
   return seen.right ? project(bundle.right, bundle.right_from_left * in_left) : project(bundle.left, in_left);
 }
 
-double solve(Bundle& bundle, const std::vector<Observation>& observations, const std::vector<Eigen::Vector3d>& board,
-             const BundleOptions& options) {
+double solve(Bundle& bundle, const std::vector<Observation>& observations,
+             const std::vector<Eigen::Vector3d>& board, const BundleOptions& options) {
   double damping = 1e-3;
   double cost = cost_of(bundle, observations, board, options.huber_px);
   for (int step = 0; step < options.max_steps; ++step) {

@@ -36,8 +36,8 @@ struct BundleOptions {
 };
 
 /// Moves the bundle to the nearest least squares solution; returns the mean robust cost [px^2].
-double solve(Bundle& bundle, const std::vector<Observation>& observations, const std::vector<Eigen::Vector3d>& board,
-             const BundleOptions& options);
+double solve(Bundle& bundle, const std::vector<Observation>& observations,
+             const std::vector<Eigen::Vector3d>& board, const BundleOptions& options);
 
 /// Standard deviations that follow from the curvature at the solution if corners scatter by `sigma_px`.
 struct BundleSigmas {

@@ -23,8 +23,8 @@ MarkerLayout charuco_layout(const BoardSpec& spec, bool white_first) {
     for (int column = 0; column < spec.columns; ++column) {
       const bool white = (row + column) % 2 == (white_first ? 0 : 1);
       if (!white) continue;
-      layout.corners_m.push_back(square_at((column - 1) * spec.square_m + margin, (row - 1) * spec.square_m + margin,
-                                           side, false));
+      layout.corners_m.push_back(
+          square_at((column - 1) * spec.square_m + margin, (row - 1) * spec.square_m + margin, side, false));
     }
   }
   return layout;

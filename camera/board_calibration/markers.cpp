@@ -17,8 +17,9 @@
 namespace flogmap {
 
 const std::vector<std::string>& aruco_dictionaries() {
-  static const std::vector<std::string> names{"4X4_50",  "4X4_100",  "4X4_250",  "5X5_50",  "5X5_100", "5X5_250",
-                                              "5X5_1000", "6X6_50",  "6X6_100",  "6X6_250", "6X6_1000"};
+  static const std::vector<std::string> names{"4X4_50",  "4X4_100", "4X4_250",  "5X5_50",
+                                              "5X5_100", "5X5_250", "5X5_1000", "6X6_50",
+                                              "6X6_100", "6X6_250", "6X6_1000"};
   return names;
 }
 
@@ -28,10 +29,10 @@ namespace {
 int dictionary_number(const std::string& name) {
   using namespace cv::aruco;
   static const std::map<std::string, int> numbers{
-      {"4X4_50", DICT_4X4_50},   {"4X4_100", DICT_4X4_100}, {"4X4_250", DICT_4X4_250},   {"5X5_50", DICT_5X5_50},
-      {"5X5_100", DICT_5X5_100}, {"5X5_250", DICT_5X5_250}, {"5X5_1000", DICT_5X5_1000}, {"6X6_50", DICT_6X6_50},
-      {"6X6_100", DICT_6X6_100}, {"6X6_250", DICT_6X6_250}, {"6X6_1000", DICT_6X6_1000},
-      {"APRILTAG_36h11", DICT_APRILTAG_36h11}};
+      {"4X4_50", DICT_4X4_50},     {"4X4_100", DICT_4X4_100},   {"4X4_250", DICT_4X4_250},
+      {"5X5_50", DICT_5X5_50},     {"5X5_100", DICT_5X5_100},   {"5X5_250", DICT_5X5_250},
+      {"5X5_1000", DICT_5X5_1000}, {"6X6_50", DICT_6X6_50},     {"6X6_100", DICT_6X6_100},
+      {"6X6_250", DICT_6X6_250},   {"6X6_1000", DICT_6X6_1000}, {"APRILTAG_36h11", DICT_APRILTAG_36h11}};
   const auto found = numbers.find(name);
   if (found == numbers.end()) {
     std::string allowed;
@@ -54,8 +55,8 @@ void detect(const cv::Mat& picture, const std::string& dictionary, int border_bi
 #else
   const auto parameters = cv::aruco::DetectorParameters::create();
   parameters->markerBorderBits = border_bits;
-  cv::aruco::detectMarkers(picture, cv::aruco::getPredefinedDictionary(dictionary_number(dictionary)), corners, ids,
-                           parameters);
+  cv::aruco::detectMarkers(picture, cv::aruco::getPredefinedDictionary(dictionary_number(dictionary)),
+                           corners, ids, parameters);
 #endif
 }
 
@@ -83,8 +84,8 @@ Image<std::uint8_t> draw_marker(const std::string& dictionary, int id, int borde
   Image<std::uint8_t> picture(side_px, side_px);
   cv::Mat view(side_px, side_px, CV_8U, picture.pixels.data());
 #if FLOGMAP_ARUCO_IN_OBJDETECT
-  cv::aruco::generateImageMarker(cv::aruco::getPredefinedDictionary(dictionary_number(dictionary)), id, side_px, view,
-                                 border_bits);
+  cv::aruco::generateImageMarker(cv::aruco::getPredefinedDictionary(dictionary_number(dictionary)), id,
+                                 side_px, view, border_bits);
 #else
   cv::aruco::drawMarker(cv::aruco::getPredefinedDictionary(dictionary_number(dictionary)), id, side_px, view,
                         border_bits);
@@ -97,7 +98,8 @@ Image<std::uint8_t> draw_marker(const std::string& dictionary, int id, int borde
 namespace {
 [[noreturn]] void refuse() {
   throw std::runtime_error(
-      "this build cannot find markers (OpenCV's aruco module was missing when it was built); a chessboard works");
+      "this build cannot find markers (OpenCV's aruco module was missing when it was built); a chessboard "
+      "works");
 }
 }  // namespace
 

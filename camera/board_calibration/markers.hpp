@@ -24,10 +24,11 @@ struct Marker {
 
 /// Markers of one dictionary ("APRILTAG_36h11" or one of the above) with a black border of so many bits.
 /// Throws std::runtime_error if this build has no detector or no such dictionary.
-[[nodiscard]] std::vector<Marker> find_markers(const Image<std::uint8_t>& picture, const std::string& dictionary,
-                                               int border_bits);
+[[nodiscard]] std::vector<Marker> find_markers(const Image<std::uint8_t>& picture,
+                                               const std::string& dictionary, int border_bits);
 
 /// A marker as it is printed, for tests and boards: side_px x side_px, black on white without a margin.
-[[nodiscard]] Image<std::uint8_t> draw_marker(const std::string& dictionary, int id, int border_bits, int side_px);
+[[nodiscard]] Image<std::uint8_t> draw_marker(const std::string& dictionary, int id, int border_bits,
+                                              int side_px);
 
 }  // namespace flogmap

@@ -77,7 +77,8 @@ Eigen::Isometry3d most_agreed(const std::vector<Eigen::Isometry3d>& poses) {
       const Eigen::Isometry3d between = poses[i].inverse() * other;
       const double turn = Eigen::AngleAxisd(between.linear()).angle();
       const double scale = std::max(poses[i].translation().norm(), 1e-9);
-      sum += std::min(1.0, turn) + std::min(1.0, (poses[i].translation() - other.translation()).norm() / scale);
+      sum +=
+          std::min(1.0, turn) + std::min(1.0, (poses[i].translation() - other.translation()).norm() / scale);
     }
     if (sum < best_sum) best = i, best_sum = sum;
   }
@@ -97,8 +98,10 @@ std::optional<Bundle> starting_bundle(const Board& board, const std::vector<Boar
   Bundle bundle{camera, camera, most_agreed(relative), {}};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    if (left[i]) pose = *left[i];
-    else if (right[i]) pose = bundle.right_from_left.inverse() * *right[i];
+    if (left[i])
+      pose = *left[i];
+    else if (right[i])
+      pose = bundle.right_from_left.inverse() * *right[i];
     bundle.left_from_board.push_back(pose);
   }
   return bundle;
@@ -127,7 +130,8 @@ std::vector<BoardPair> some_of(const std::vector<BoardPair>& pairs) {
 
 /// The cameras and their relation, roughly: of several focal lengths the one from which a few pairs are
 /// explained best.
-Bundle rough_solution(const Board& board, const std::vector<BoardPair>& pairs, const CalibratorOptions& options) {
+Bundle rough_solution(const Board& board, const std::vector<BoardPair>& pairs,
+                      const CalibratorOptions& options) {
   const bool fisheye = options.model == Distortion::equidistant;
   const std::vector<double> shares = fisheye ? std::vector{0.25, 0.33, 0.45, 0.6, 0.9, 1.4}
                                              : std::vector{0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0};
@@ -139,7 +143,8 @@ Bundle rough_solution(const Board& board, const std::vector<BoardPair>& pairs, c
     auto bundle = starting_bundle(board, some, first_guess(options, share));
     if (!bundle) continue;
     constexpr double kAlmostQuadratic = 20;  // px: everything is far off at first
-    const double cost = solve(*bundle, observations, board, {.max_steps = kStepsToTry, .huber_px = kAlmostQuadratic});
+    const double cost =
+        solve(*bundle, observations, board, {.max_steps = kStepsToTry, .huber_px = kAlmostQuadratic});
     if (cost < best_cost) best = std::move(bundle), best_cost = cost;
   }
   if (!best) throw std::runtime_error("no pair shows the board to both cameras well enough");
@@ -167,7 +172,8 @@ std::vector<CornerError> errors_of(const Bundle& bundle, const std::vector<Obser
   for (const Observation& seen : observations) {
     const auto pixel = predict(bundle, seen, board[static_cast<std::size_t>(seen.point)]);
     constexpr double kFarOff = 1e6;
-    const Eigen::Vector2d error = pixel ? Eigen::Vector2d(*pixel - seen.pixel) : Eigen::Vector2d(kFarOff, kFarOff);
+    const Eigen::Vector2d error =
+        pixel ? Eigen::Vector2d(*pixel - seen.pixel) : Eigen::Vector2d(kFarOff, kFarOff);
     errors.push_back({seen.pair, seen.right, seen.point, seen.pixel, error, true});
   }
   return errors;
@@ -191,7 +197,8 @@ double rms(const std::vector<CornerError>& corners) {
   return std::sqrt(sum / std::max(count, 1.0));
 }
 
-std::vector<Observation> used_ones(const std::vector<Observation>& all, const std::vector<CornerError>& corners) {
+std::vector<Observation> used_ones(const std::vector<Observation>& all,
+                                   const std::vector<CornerError>& corners) {
   std::vector<Observation> used;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (corners[i].used) used.push_back(all[i]);
@@ -212,7 +219,8 @@ CalibrationResult calibrate_stereo(const Board& board, const std::vector<BoardPa
   };
   Bundle bundle = with_all_pairs(rough_solution(board, pairs, options), board, pairs);
   const std::vector<Observation> observations = observations_of(pairs);
-  const BundleOptions robust{.max_steps = 60, .huber_px = 1, .on_step = [&](int step) { report(step / 120.0); }};
+  const BundleOptions robust{
+      .max_steps = 60, .huber_px = 1, .on_step = [&](int step) { report(step / 120.0); }};
   solve(bundle, observations, board, robust);
   CalibrationResult result;
   result.corners = errors_of(bundle, observations, board);

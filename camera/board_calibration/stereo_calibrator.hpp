@@ -28,8 +28,8 @@ struct CalibrationResult {
   StereoCalibration calibration;
   std::vector<Eigen::Isometry3d> left_from_board;  // one per pair
   std::vector<CornerError> corners;
-  double rms_px = 0;          // of the corners used: root mean square distance
-  double focal_sigma = 0;     // standard deviation of the left focal length / that length
+  double rms_px = 0;       // of the corners used: root mean square distance
+  double focal_sigma = 0;  // standard deviation of the left focal length / that length
   double baseline_sigma_m = 0;
 };
 

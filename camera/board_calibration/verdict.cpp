@@ -59,8 +59,8 @@ void advise_on_coverage(const CalibrationResult& result, bool right, std::vector
     }
   }
   if (empty.empty()) return;
-  advice.push_back(std::string("the ") + (right ? "right" : "left") + " camera never saw the board at: " + empty +
-                   "; hold it there too");
+  advice.push_back(std::string("the ") + (right ? "right" : "left") +
+                   " camera never saw the board at: " + empty + "; hold it there too");
 }
 
 /// Boards that all face the camera tell focal length and distance apart badly.
@@ -91,12 +91,14 @@ void advise_on_pairs(const CalibrationResult& result, const std::vector<std::str
   const double limit = std::max(0.5, 3 * errors[errors.size() / 2].first);
   std::string bad;
   for (const auto& [error, pair] : errors) {
-    if (error > limit) bad += (bad.empty() ? "" : ", ") + names.at(pair) + " (" + text("%.2g", error) + " px)";
+    if (error > limit)
+      bad += (bad.empty() ? "" : ", ") + names.at(pair) + " (" + text("%.2g", error) + " px)";
   }
   if (!bad.empty()) advice.push_back("take these again, or leave them out: " + bad);
 }
 
-void advise_on_numbers(const CalibrationVerdict& verdict, double focal_sigma, std::vector<std::string>& advice) {
+void advise_on_numbers(const CalibrationVerdict& verdict, double focal_sigma,
+                       std::vector<std::string>& advice) {
   constexpr std::size_t kFew = 10;
   if (verdict.epipolar_p95_px > kGoodEpipolarPx)
     advice.push_back("rows differ by up to " + text("%.2f", verdict.epipolar_p95_px) +
@@ -113,7 +115,8 @@ void advise_on_numbers(const CalibrationVerdict& verdict, double focal_sigma, st
 }
 
 CalibrationGrade grade_of(const CalibrationVerdict& verdict, bool advised) {
-  if (verdict.epipolar_p95_px > kUsableEpipolarPx || verdict.rms_px > kUsableRmsPx) return CalibrationGrade::redo;
+  if (verdict.epipolar_p95_px > kUsableEpipolarPx || verdict.rms_px > kUsableRmsPx)
+    return CalibrationGrade::redo;
   const bool good = verdict.epipolar_p95_px <= kGoodEpipolarPx && verdict.rms_px <= kGoodRmsPx && !advised;
   return good ? CalibrationGrade::good : CalibrationGrade::usable;
 }
@@ -129,7 +132,8 @@ std::vector<double> epipolar_errors_px(const CalibrationResult& result) {
     if (!corner.used) continue;
     const auto ray = ray_from_pixel(corner.right ? calibration.right : calibration.left, corner.pixel);
     if (!ray) continue;
-    const Eigen::Vector3d turned = (corner.right ? turn.rectified_from_right : turn.rectified_from_left) * *ray;
+    const Eigen::Vector3d turned =
+        (corner.right ? turn.rectified_from_right : turn.rectified_from_left) * *ray;
     if (turned.z() > 0)
       rows[{corner.pair, corner.point}][corner.right ? 1 : 0] = focal_px * turned.y() / turned.z();
   }
@@ -149,7 +153,8 @@ CalibrationVerdict judge(const CalibrationResult& result, const std::vector<std:
   const StereoCamera camera = Rectifier(result.calibration).camera();
   verdict.field_of_view_rad = 2 * std::atan(camera.width_px / (2 * camera.focal_px));
   verdict.num_pairs = names.size();
-  for (const CornerError& corner : result.corners) ++(corner.used ? verdict.num_corners : verdict.num_left_out);
+  for (const CornerError& corner : result.corners)
+    ++(corner.used ? verdict.num_corners : verdict.num_left_out);
   advise_on_numbers(verdict, result.focal_sigma, verdict.advice);
   advise_on_pairs(result, names, verdict.advice);
   advise_on_tilt(result, verdict.advice);

@@ -29,7 +29,8 @@ struct CalibrationVerdict {
 };
 
 /// `names`: one per pair, for messages ("left05.png").
-[[nodiscard]] CalibrationVerdict judge(const CalibrationResult& result, const std::vector<std::string>& names);
+[[nodiscard]] CalibrationVerdict judge(const CalibrationResult& result,
+                                       const std::vector<std::string>& names);
 
 /// Vertical distances [px] between both views of every corner seen by both, after rectification; unsorted.
 [[nodiscard]] std::vector<double> epipolar_errors_px(const CalibrationResult& result);

@@ -54,9 +54,16 @@ std::optional<Eigen::Vector3d> undistort_polynomial(const CameraIntrinsics& came
 std::optional<Eigen::Vector3d> undistort_equidistant(const CameraIntrinsics& camera,
                                                      const Eigen::Vector2d& d) {
   const double radius = d.norm();
-  double low = 0, high = 3.1;
-  if (equidistant_radius(camera, high) < radius) return std::nullopt;
-  for (int step = 0; step < 2 * kMaxSteps; ++step) {
+  // The polynomial means something only as far as it rises; beyond its first turning point nothing is seen.
+  constexpr double kStep = 0.05, kWidest = 3.1;
+  double low = 0, high = kStep;
+  while (equidistant_radius(camera, high) < radius) {
+    if (high >= kWidest || equidistant_radius(camera, high) <= equidistant_radius(camera, low))
+      return std::nullopt;
+    low = high;
+    high += kStep;
+  }
+  for (int step = 0; step < kMaxSteps; ++step) {
     const double middle = (low + high) / 2;
     (equidistant_radius(camera, middle) < radius ? low : high) = middle;
   }

@@ -53,7 +53,8 @@ void add_options(OptionTable& table, CalibrateArguments& arguments) {
   table.number("square-mm", "MM", arguments.square_mm, 0.1, 10000, "side of a square, or of a tag");
   table.number("marker-mm", "MM", arguments.marker_mm, 0, 10000,
                "ChArUco: side of a marker; 0 = three quarters of the square");
-  table.number("tag-gap", "SHARE", board.tag_gap_share, 0.001, 2, "AprilTag grid: gap between tags / side of a tag");
+  table.number("tag-gap", "SHARE", board.tag_gap_share, 0.001, 2,
+               "AprilTag grid: gap between tags / side of a tag");
   table.text("dictionary", "NAME", board.dictionary, "ChArUco: 4X4_50 to 6X6_1000; empty = found out");
   table.choice<Distortion>("model", arguments.model,
                            {{"radtan", Distortion::radtan},
@@ -77,9 +78,10 @@ BoardSighting look_at(const std::filesystem::path& file, BoardDetector& detector
   const Picture& picture = read.picture;
   if (sightings.width_px == 0) sightings.width_px = picture.width, sightings.height_px = picture.height;
   if (picture.width != sightings.width_px || picture.height != sightings.height_px) {
-    return {{}, file.string() + ": " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
-                    " px, the others are " + std::to_string(sightings.width_px) + "x" +
-                    std::to_string(sightings.height_px)};
+    return {{},
+            file.string() + ": " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                " px, the others are " + std::to_string(sightings.width_px) + "x" +
+                std::to_string(sightings.height_px)};
   }
   BoardSighting sighting = detector.find(to_grey(picture));
   if (!sighting.problem.empty()) sighting.problem = file.string() + ": " + sighting.problem;
@@ -100,13 +102,14 @@ Sightings look_at_all(const CalibrateArguments& arguments) {
     }
     if (arguments.board.pattern == BoardPattern::chessboard) match_directions(left.view, right.view);
     const bool one_is_enough = arguments.board.pattern != BoardPattern::chessboard;
-    const bool seen = one_is_enough ? !left.view.empty() || !right.view.empty()
-                                    : !left.view.empty() && !right.view.empty();
+    const bool seen =
+        one_is_enough ? !left.view.empty() || !right.view.empty() : !left.view.empty() && !right.view.empty();
     if (seen) {
       sightings.pairs.push_back({std::move(left.view), std::move(right.view)});
       sightings.names.push_back(list.pairs[i].left.filename().string());
     }
-    progress.show(static_cast<std::int64_t>(i + 1), std::to_string(sightings.pairs.size()) + " pairs show the board");
+    progress.show(static_cast<std::int64_t>(i + 1),
+                  std::to_string(sightings.pairs.size()) + " pairs show the board");
   }
   progress.finish();
   return sightings;
@@ -119,8 +122,10 @@ void print_verdict(const CalibrationVerdict& verdict, const Sightings& sightings
               verdict.num_corners + verdict.num_left_out, verdict.num_left_out);
   std::printf("rms              %.3f px\n", verdict.rms_px);
   std::printf("epipolar p95     %.3f px\n", verdict.epipolar_p95_px);
-  std::printf("baseline         %.2f mm +- %.2f\n", kMmPerM * verdict.baseline_m, kMmPerM * verdict.baseline_sigma_m);
-  std::printf("field of view    %.1f degrees (rectified, horizontal)\n", kDegreesPerRad * verdict.field_of_view_rad);
+  std::printf("baseline         %.2f mm +- %.2f\n", kMmPerM * verdict.baseline_m,
+              kMmPerM * verdict.baseline_sigma_m);
+  std::printf("field of view    %.1f degrees (rectified, horizontal)\n",
+              kDegreesPerRad * verdict.field_of_view_rad);
   std::printf("verdict          %s\n", grade_name(verdict.grade));
   for (const std::string& advice : verdict.advice) std::printf("to do: %s\n", advice.c_str());
   std::printf("written: %s\n", out.c_str());
@@ -129,20 +134,20 @@ void print_verdict(const CalibrationVerdict& verdict, const Sightings& sightings
 CalibrationResult solve_with_bar(const CalibrateArguments& arguments, const Sightings& sightings) {
   constexpr std::int64_t kHundred = 100;
   ProgressBar progress("calibrating", kHundred);
-  CalibratorOptions options{.model = arguments.model,
-                            .width_px = sightings.width_px,
-                            .height_px = sightings.height_px,
-                            .on_progress = [&](double share) {
-                              progress.show(static_cast<std::int64_t>(share * kHundred), "");
-                            }};
+  CalibratorOptions options{
+      .model = arguments.model,
+      .width_px = sightings.width_px,
+      .height_px = sightings.height_px,
+      .on_progress = [&](double share) { progress.show(static_cast<std::int64_t>(share * kHundred), ""); }};
   CalibrationResult result = calibrate_stereo(board_points(arguments.board), sightings.pairs, options);
   progress.finish();
   return result;
 }
 
 int calibrate(CalibrateArguments arguments) {
-  for (const auto& [name, value] : {std::pair("--left", &arguments.left), std::pair("--right", &arguments.right),
-                                    std::pair("--out", &arguments.out)}) {
+  for (const auto& [name, value] :
+       {std::pair("--left", &arguments.left), std::pair("--right", &arguments.right),
+        std::pair("--out", &arguments.out)}) {
     if (value->empty()) throw UsageError(std::string(name) + " is missing; see flogmap calibrate --help");
   }
   arguments.board.square_m = arguments.square_mm / kMmPerM;
@@ -174,8 +179,9 @@ RunCommand add_calibrate(CLI::App& app) {
   auto state = std::make_shared<State>();
   add_options(state->table, state->arguments);
   state->table.attach(app);
-  app.footer("Example: flogmap calibrate --left 'left*.png' --right 'right*.png' --board 9x6 --square-mm 25 "
-             "--out calib.yaml");
+  app.footer(
+      "Example: flogmap calibrate --left 'left*.png' --right 'right*.png' --board 9x6 --square-mm 25 "
+      "--out calib.yaml");
   return [state] {
     state->table.apply(all_option_names());
     return calibrate(state->arguments);

@@ -22,5 +22,6 @@ RunCommand add_export(CLI::App& app);
 RunCommand add_simulate(CLI::App& app);
 RunCommand add_record(CLI::App& app);
 RunCommand add_merge(CLI::App& app);
+RunCommand add_calibrate(CLI::App& app);
 
 }  // namespace flogmap

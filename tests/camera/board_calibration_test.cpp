@@ -54,7 +54,8 @@ CalibrationResult calibrate(const Rig& rig, int count, std::vector<std::string>&
   for (const Eigen::Isometry3d& pose : board_poses(rig.spec, count, rig.near, rig.reach, rig.y_is_up)) {
     const Eigen::Isometry3d middle = Eigen::Translation3d(0.06, 0, 0) * pose;  // between both cameras
     BoardSighting in_left = detector.find(left.picture(rig.paint, middle, random));
-    BoardSighting in_right = detector.find(right.picture(rig.paint, rig.truth.right_from_left * middle, random));
+    BoardSighting in_right =
+        detector.find(right.picture(rig.paint, rig.truth.right_from_left * middle, random));
     if (rig.spec.pattern == BoardPattern::chessboard) {
       if (in_left.view.empty() || in_right.view.empty()) continue;
       match_directions(in_left.view, in_right.view);
@@ -71,7 +72,8 @@ double largest_difference_px(const CameraIntrinsics& truth, const CameraIntrinsi
   double largest = 0;
   for (double y = -1; y <= 1; y += 0.1) {
     for (double x = -1; x <= 1; x += 0.1) {
-      const Eigen::Vector2d pixel(truth.width_px * (0.5 + share * x / 2), truth.height_px * (0.5 + share * y / 2));
+      const Eigen::Vector2d pixel(truth.width_px * (0.5 + share * x / 2),
+                                  truth.height_px * (0.5 + share * y / 2));
       const auto ray = ray_from_pixel(truth, pixel);
       if (ray) largest = std::max(largest, (pixel_from_ray(found, *ray) - pixel).norm());
     }
@@ -98,13 +100,15 @@ void expect_found(const Rig& rig, double focal_share, double baseline_m) {
 
 TEST(BoardCalibration, FindsTheCamerasThatSawAChessboard) {
   const BoardSpec spec{.square_m = 0.06};  // 9x6
-  expect_found({spec, true_pair(Distortion::radtan, {-0.28, 0.09, 0.0004, -0.0003, 0}, 520), paint_chessboard(spec)},
-               0.005, 0.0005);
+  expect_found(
+      {spec, true_pair(Distortion::radtan, {-0.28, 0.09, 0.0004, -0.0003, 0}, 520), paint_chessboard(spec)},
+      0.005, 0.0005);
 }
 
 TEST(BoardCalibration, FindsWideCamerasWithTheRationalModel) {
   const BoardSpec spec{.square_m = 0.06};
-  const Rig rig{spec, true_pair(Distortion::rational, {0.35, 0.05, 0.0002, -0.0001, 0.002, 0.68, 0.16, 0.01}, 400),
+  const Rig rig{spec,
+                true_pair(Distortion::rational, {0.35, 0.05, 0.0002, -0.0001, 0.002, 0.68, 0.16, 0.01}, 400),
                 paint_chessboard(spec), 1.1, 0.45};
   std::vector<std::string> names;
   const CalibrationResult result = calibrate(rig, 20, names);
@@ -122,15 +126,15 @@ class MarkerBoards : public ::testing::Test {
 
 TEST_F(MarkerBoards, AnAprilTagGridOfKalibrGivesTheCameras) {
   const BoardSpec spec{.pattern = BoardPattern::apriltag, .columns = 6, .rows = 5, .square_m = 0.07};
-  expect_found({spec, true_pair(Distortion::radtan, {-0.28, 0.09, 0.0004, -0.0003, 0}, 520), paint_tags(spec, 2), 1.1, 0.3,
-                true},
+  expect_found({spec, true_pair(Distortion::radtan, {-0.28, 0.09, 0.0004, -0.0003, 0}, 520),
+                paint_tags(spec, 2), 1.1, 0.3, true},
                0.005, 0.0008);
 }
 
 TEST_F(MarkerBoards, AFisheyePairIsFoundFromAnAprilTagGrid) {
   const BoardSpec spec{.pattern = BoardPattern::apriltag, .columns = 6, .rows = 5, .square_m = 0.08};
-  expect_found({spec, true_pair(Distortion::equidistant, {0.05, -0.01, 0.003, -0.001}, 300), paint_tags(spec, 1), 0.6, 0.7,
-                true},
+  expect_found({spec, true_pair(Distortion::equidistant, {0.05, -0.01, 0.003, -0.001}, 300),
+                paint_tags(spec, 1), 0.6, 0.7, true},
                0.01, 0.001);
 }
 
@@ -171,7 +175,8 @@ TEST(BoardCalibration, WhatItWritesTheReadersRead) {
 TEST(BoardCalibration, ImpossibleBoardsAreNamed) {
   EXPECT_THAT([] { check(BoardSpec{.columns = 1}); },
               ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("columns"), HasSubstr("allowed"))));
-  EXPECT_THAT([] { check(BoardSpec{.square_m = 0}); }, ThrowsMessage<std::runtime_error>(HasSubstr("square")));
+  EXPECT_THAT([] { check(BoardSpec{.square_m = 0}); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("square")));
 }
 
 // ----------------------------------------------------------------------------------------------- verdict
@@ -230,7 +235,8 @@ TEST(CalibrationVerdict, NoisyCornersMeanRedo) {
 }
 
 TEST(CalibrationVerdict, BoardsThatAllFaceTheCameraAreToBeTilted) {
-  EXPECT_THAT(judge(calibrate_points(0.1, 1.2, 0.4, 0.2, 12), numbered(12)).advice, Contains(HasSubstr("tilt it")));
+  EXPECT_THAT(judge(calibrate_points(0.1, 1.2, 0.4, 0.2, 12), numbered(12)).advice,
+              Contains(HasSubstr("tilt it")));
 }
 
 TEST(CalibrationVerdict, AreasWithoutTheBoardAreNamed) {
@@ -263,7 +269,8 @@ CalibrationVerdict calibrate_folder(const std::filesystem::path& folder) {
   for (int i = 1; i < 20; ++i) {
     const std::string number = std::to_string(100 + i).substr(1);
     for (const char* extension : {".png", ".jpg"}) {
-      const auto left = folder / ("left" + number + extension), right = folder / ("right" + number + extension);
+      const auto left = folder / ("left" + number + extension),
+                 right = folder / ("right" + number + extension);
       if (!std::filesystem::exists(left)) continue;
       const Picture picture = read_picture(left).picture;
       width = picture.width, height = picture.height;

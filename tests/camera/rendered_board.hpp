@@ -40,7 +40,8 @@ inline double paint_marker(const Image<std::uint8_t>& bits, double u, double v) 
 inline std::vector<Image<std::uint8_t>> marker_bits(const std::string& dictionary, int count, int border,
                                                     int inner_bits) {
   std::vector<Image<std::uint8_t>> bits;
-  for (int id = 0; id < count; ++id) bits.push_back(draw_marker(dictionary, id, border, inner_bits + 2 * border));
+  for (int id = 0; id < count; ++id)
+    bits.push_back(draw_marker(dictionary, id, border, inner_bits + 2 * border));
   return bits;
 }
 
@@ -58,7 +59,8 @@ inline BoardPaint paint_charuco(const BoardSpec& spec, const std::string& dictio
     const double margin = (1 - spec.marker_share) / 2;
     const double u = (x / spec.square_m - (column - 1) - margin) / spec.marker_share;
     const double v = (y / spec.square_m - (row - 1) - margin) / spec.marker_share;
-    return u < 0 || v < 0 || u >= 1 || v >= 1 ? kWhite : paint_marker(bits[static_cast<std::size_t>(id)], u, v);
+    return u < 0 || v < 0 || u >= 1 || v >= 1 ? kWhite
+                                              : paint_marker(bits[static_cast<std::size_t>(id)], u, v);
   };
 }
 
@@ -87,14 +89,16 @@ class BoardCamera {
     for (int y = 0; y < camera.height_px; ++y) {
       for (int x = 0; x < camera.width_px; ++x) {
         for (int sample = 0; sample < kSide * kSide; ++sample) {
-          const Eigen::Vector2d pixel(x - 0.5 + (sample % kSide + 0.5) / kSide, y - 0.5 + (sample / kSide + 0.5) / kSide);
+          const Eigen::Vector2d pixel(x - 0.5 + (sample % kSide + 0.5) / kSide,
+                                      y - 0.5 + (sample / kSide + 0.5) / kSide);
           rays_.push_back(ray_from_pixel(camera, pixel).value_or(Eigen::Vector3d::Zero()));
         }
       }
     }
   }
 
-  [[nodiscard]] Image<std::uint8_t> picture(const BoardPaint& paint, const Eigen::Isometry3d& camera_from_board,
+  [[nodiscard]] Image<std::uint8_t> picture(const BoardPaint& paint,
+                                            const Eigen::Isometry3d& camera_from_board,
                                             std::mt19937& random) const {
     const Eigen::Isometry3d board_from_camera = camera_from_board.inverse();
     const Eigen::Vector3d eye = board_from_camera.translation();
@@ -107,8 +111,8 @@ class BoardCamera {
         const double distance = -eye.z() / ray.z();
         sum += distance > 0 ? paint(eye.x() + distance * ray.x(), eye.y() + distance * ray.y()) : kTable;
       }
-      picture.pixels[i] =
-          static_cast<std::uint8_t>(std::clamp(std::round(sum / (kSide * kSide) + noise(random)), 0.0, 255.0));
+      picture.pixels[i] = static_cast<std::uint8_t>(
+          std::clamp(std::round(sum / (kSide * kSide) + noise(random)), 0.0, 255.0));
     }
     return picture;
   }
