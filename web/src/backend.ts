@@ -1,5 +1,14 @@
 // What the page asks the server for outside the stream: steering, routes, files. One implementation per kind of server.
 
+import type { MappedView, ViewCameraModel } from './walk/view_choice';
+
+/** The mapped views that have a mesh. */
+export interface ViewList {
+  readonly epoch: string;
+  readonly camera: ViewCameraModel;
+  readonly views: readonly MappedView[];
+}
+
 export interface PlaybackChange {
   readonly position_s?: number;
   readonly rate?: number;
@@ -19,6 +28,8 @@ export interface Backend {
   changePlayback(change: PlaybackChange): Promise<void>;
   step(): Promise<void>;
   route(from: Spot, to: Spot, robotRadiusM: number): Promise<Route>;
+  views(): Promise<ViewList>;
+  viewMesh(number: number): Promise<ArrayBuffer>;
   /** Addresses to open or copy; undefined where there is no such server. */
   exportUrl(format: string): string | undefined;
   cellUrl(x: number, y: number): string | undefined;
@@ -53,6 +64,12 @@ export function restBackend(base: string, ask: Fetch = (input, init) => fetch(in
     step: () => post('playback:step'),
     changePlayback: async (change) => void (await send('PATCH', 'playback', change)),
     route: async (from, to, radius) => routeFrom(await send('POST', 'maps/live/route', { from: [from.x, from.y], to: [to.x, to.y], robot_radius_m: radius })),
+    views: async () => viewsFrom(await send('GET', 'maps/live/views')),
+    viewMesh: async (number) => {
+      const response = await ask(`${base}maps/live/views/${number}.glb`);
+      if (!response.ok) throw new Refusal(`view ${number} cannot be had: ${response.status}`);
+      return response.arrayBuffer();
+    },
     exportUrl: (format) => `${base}maps/live/export?format=${format}`,
     cellUrl: (x, y) => `${base}maps/live/cell?x=${x.toFixed(3)}&y=${y.toFixed(3)}`,
   };
@@ -70,5 +87,14 @@ function routeFrom(answer: unknown): Route {
     points: list.map((p) => (Array.isArray(p) ? { x: Number(p[0]), y: Number(p[1]) } : { x: Number((p as Spot).x), y: Number((p as Spot).y) })),
     lengthM: Number(length_m ?? 0),
     clearanceM: Number(clearance_m ?? 0),
+  };
+}
+
+function viewsFrom(answer: unknown): ViewList {
+  const { epoch, camera, views } = answer as { epoch: string; camera: Record<string, number>; views: { number: number; time_ns: string; position: [number, number, number]; orientation_xyzw: [number, number, number, number] }[] };
+  const of = (name: string): number => camera[name] ?? 0;
+  return {
+    epoch, camera: { focalPx: of('focal_px'), cxPx: of('cx_px'), cyPx: of('cy_px'), widthPx: of('width_px'), heightPx: of('height_px') },
+    views: views.map(({ number, time_ns, position, orientation_xyzw: [qx, qy, qz, qw] }) => ({ number, timeNs: BigInt(time_ns), position, orientation: { qx, qy, qz, qw } })),
   };
 }

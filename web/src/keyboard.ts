@@ -4,6 +4,7 @@ import { pinCell, asJson } from './panels/inspector';
 import { toggleSolo } from './panels/layers';
 import { togglePause } from './panels/header';
 import { showHelp } from './panels/help';
+import { leaveWalk, toggleWalk } from './panels/walk_hud';
 import { nextFollow, showAll, toggleHold, toggleTool } from './panels/toolbar';
 import type { Page } from './page';
 import { STYLES } from './rules';
@@ -63,6 +64,7 @@ function chooses(page: Page, actions: KeyActions, key: string): boolean {
     case 'h': toggleHold(page); return true;
     case 'm': toggleTool(page, 'measure'); return true;
     case 'r': toggleTool(page, 'route'); return true;
+    case 'w': toggleWalk(page); return true;
     case 'p': pinCell(page); return true;
     case 'c': void navigator.clipboard.writeText(asJson(page)); return true;
     case 'l': actions.share(); return true;
@@ -71,7 +73,10 @@ function chooses(page: Page, actions: KeyActions, key: string): boolean {
     case ' ': void togglePause(page); return true;
     case '?': showHelp(); return true;
     case 'backspace': return actions.back();
-    case 'escape': focus.set({ tool: 'inspect', cell: undefined, sheet: 'none' }); return true;
+    case 'escape':
+      if (focus.get().walking) leaveWalk(page);
+      focus.set({ tool: 'inspect', cell: undefined, sheet: 'none' });
+      return true;
     default: return false;
   }
 }

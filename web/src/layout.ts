@@ -16,6 +16,7 @@ import { statusPanel } from './panels/status';
 import { tabs } from './panels/tabs';
 import { timeline } from './panels/timeline';
 import { toolbar } from './panels/toolbar';
+import { walkHud } from './panels/walk_hud';
 import type { Page } from './page';
 import { h } from './ui/dom';
 
@@ -25,7 +26,7 @@ export function layout(page: Page, map: HTMLElement, share: () => void): Overlay
   map.classList.add('map');
   page.view.canvas.setAttribute('aria-label', 'Map. Arrow keys move it, plus and minus zoom.');
   page.view.canvas.setAttribute('role', 'application');
-  map.append(over.element, emptyState(page), legend(page), mapCorner(page), toolbar(page), timeline(page), staleBanner(page), notices(page));
+  map.append(over.element, emptyState(page), legend(page), mapCorner(page), walkHud(page), toolbar(page), timeline(page), staleBanner(page), notices(page));
   const left = h('aside', { class: 'side left', 'aria-label': 'Map and layers' }, layersPanel(page), appearancePanel(page));
   const right = h('aside', { class: 'side right', 'aria-label': 'Camera, cell and status' }, picturesPanel(page), inspectorPanel(page), statusPanel(page, chartsPanel(page)));
   document.body.append(header(page, { share, help: showHelp }), left, map, right, tabs(page));

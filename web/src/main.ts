@@ -12,6 +12,7 @@ import type { Focus, Page } from './page';
 import { linkHash, readHash } from './permalink';
 import { Gestures } from './scene/gestures';
 import { MapView } from './scene/map_view';
+import { Walkthrough } from './scene/walkthrough';
 import { keptSettings } from './settings';
 import { Store } from './signal';
 import { installTestHook } from './test_hook';
@@ -25,7 +26,7 @@ const query = new URLSearchParams(location.search);
 const linked = readHash(location.hash);
 const settings = keptSettings(query.has('fresh') ? null : localStorage);
 settings.set(linked.settings);
-const focus = new Store<Focus>({ tool: 'inspect', hover: undefined, cell: linked.cell, pins: [], sheet: 'none', theme: 'dark', heldSince: 0 });
+const focus = new Store<Focus>({ tool: 'inspect', hover: undefined, cell: linked.cell, pins: [], sheet: 'none', theme: 'dark', heldSince: 0, walking: false });
 const phone = matchMedia('(max-width: 760px)').matches;
 const budget = Number(query.get('budget') ?? (phone ? 96 : 256)) * 2 ** 20; // bytes of tiles held
 const live = new LiveMap(new TileStore(budget));
@@ -55,7 +56,8 @@ function openWebSocket(): Socket {
 
 const holder = document.createElement('main');
 const view = new MapView(holder, live, settings);
-const page: Page = { live, settings, focus, view, connection, backend };
+const walk = new Walkthrough(live, backend, budget / 2, () => view.requestDraw());
+const page: Page = { live, settings, focus, view, walk, connection, backend };
 
 function share(): void {
   const hash = linkHash({ epoch: live.info?.epoch ?? '', rev: live.rev, view: view.viewport, cell: focus.get().cell, settings: settings.get(), layers: live.info?.layers.map(({ id }) => id) ?? [] });

@@ -4,6 +4,7 @@ import type { Backend } from './backend';
 import type { Connection } from './connection';
 import type { LiveMap } from './live_map';
 import type { Theme } from './palette';
+import type { Walkthrough } from './scene/walkthrough';
 import type { MapView } from './scene/map_view';
 import type { Settings } from './settings';
 import type { Store } from './signal';
@@ -22,6 +23,8 @@ export interface Focus {
   readonly theme: Theme;
   /** Time of day from which on the picture stands still, though the map goes on; 0 = it does not. */
   readonly heldSince: number;
+  /** First person through the map. */
+  readonly walking: boolean;
 }
 
 export interface Page {
@@ -29,6 +32,7 @@ export interface Page {
   readonly settings: Store<Settings>;
   readonly focus: Store<Focus>;
   readonly view: MapView;
+  readonly walk: Walkthrough;
   readonly connection: Connection;
   readonly backend: Backend;
 }

@@ -1,6 +1,7 @@
 // window.__flog: what end-to-end tests look at. Read only.
 
 import type { Page } from './page';
+import type { WalkState } from './scene/walkthrough';
 
 export interface TestHook {
   readonly rev: number;
@@ -9,12 +10,15 @@ export interface TestHook {
   readonly fps: number;
   readonly trajectoryLength: number;
   readonly shownTiles: number;
+  readonly walk: WalkState & { readonly position: readonly number[] };
   tiles(): number;
   keys(): string[];
   /** E, O, K, C per cell and layer as held, or null. */
   tile(level: number, x: number, y: number): { rev: number; planes: number[] } | null;
   /** CSS pixel of a world point on the canvas. */
   project(x: number, y: number, z?: number): { x: number; y: number };
+  /** The same in the walkthrough; null behind the eye. */
+  projectWalk(x: number, y: number, z: number): { x: number; y: number } | null;
 }
 
 export function installTestHook(page: Page): void {
@@ -26,6 +30,7 @@ export function installTestHook(page: Page): void {
     get fps() { return view.fps; },
     get trajectoryLength() { return live.trajectory.length; },
     get shownTiles() { return view.shown.length; },
+    get walk() { return { ...page.walk.state, position: page.walk.walker.position }; },
     tiles: () => live.tiles.count,
     keys: () => Array.from(live.tiles.all(), (tile) => `${tile.level}/${tile.x}/${tile.y}`),
     tile: (level, x, y) => {
@@ -33,6 +38,7 @@ export function installTestHook(page: Page): void {
       return tile ? { rev: Number(tile.rev), planes: Array.from(tile.planes) } : null;
     },
     project: (x, y, z) => view.project(x, y, z),
+    projectWalk: (x, y, z) => page.walk.project(x, y, z, view.viewport),
   };
   Object.assign(window, { __flog: hook });
 }

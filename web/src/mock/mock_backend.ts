@@ -12,6 +12,8 @@ export function mockBackend(server: MockServer): Backend {
     changePlayback: no('Replay'),
     step: no('Replay'),
     route: no('A route'),
+    views: no('A walkthrough'),
+    viewMesh: no('A walkthrough'),
     exportUrl: () => undefined,
     cellUrl: () => undefined,
   };

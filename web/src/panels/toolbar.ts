@@ -4,6 +4,7 @@ import type { Page, Tool } from '../page';
 import type { Follow } from '../settings';
 import { h } from '../ui/dom';
 import { iconButton, setIcon } from '../ui/controls';
+import { toggleWalk } from './walk_hud';
 
 export const FOLLOW_TITLES: Record<Follow, string> = { free: 'Free view', north: 'Follow, north up', heading: 'Follow, heading up' };
 const NEXT_FOLLOW: Record<Follow, Follow> = { free: 'north', north: 'heading', heading: 'free' };
@@ -21,13 +22,15 @@ export function toolbar(page: Page): HTMLElement {
   const measure = iconButton('ruler', 'Measure', () => toggleTool(page, 'measure'), 'M');
   const hold = iconButton('pause', 'Hold the picture', () => toggleHold(page), 'H');
   const route = iconButton('route', 'Route', () => toggleTool(page, 'route'), 'R');
+  const walk = iconButton('person', 'Walk through the mapped views', () => toggleWalk(page), 'W');
   settings.watch(['follow', 'solid'], (now) => {
     follow.setAttribute('aria-pressed', String(now.follow !== 'free'));
     follow.title = `${FOLLOW_TITLES[now.follow]}  (F)`;
     follow.setAttribute('aria-label', FOLLOW_TITLES[now.follow]);
     solid.setAttribute('aria-pressed', String(now.solid));
   });
-  focus.watch(['tool', 'heldSince'], ({ tool, heldSince }) => {
+  focus.watch(['tool', 'heldSince', 'walking'], ({ tool, heldSince, walking }) => {
+    walk.setAttribute('aria-pressed', String(walking));
     hold.setAttribute('aria-pressed', String(heldSince > 0));
     setIcon(hold, heldSince > 0 ? 'play' : 'pause', heldSince > 0 ? 'Let the picture go on' : 'Hold the picture');
     measure.setAttribute('aria-pressed', String(tool === 'measure'));
@@ -41,7 +44,7 @@ export function toolbar(page: Page): HTMLElement {
   return h('div', { class: 'toolbar', role: 'toolbar', 'aria-label': 'Map tools' },
     h('div', { class: 'tool-group' }, iconButton('plus', 'Zoom in', () => view.zoomBy(1.5), '+'), iconButton('minus', 'Zoom out', () => view.zoomBy(1 / 1.5), '−'), iconButton('fit', 'Show the whole map', () => showAll(page), '0')),
     h('div', { class: 'tool-group' }, follow, north, solid, hold),
-    h('div', { class: 'tool-group' }, measure, route));
+    h('div', { class: 'tool-group' }, measure, route), h('div', { class: 'tool-group tool-group-walk' }, walk));
 }
 
 export function showAll(page: Page): void {

@@ -16,12 +16,14 @@ import { PathLine } from './path_line';
 import { unitQuad } from './tile_meshes';
 import { TileScene } from './tile_scene';
 import { ViewCamera } from './view_camera';
+import type { Walkthrough } from './walkthrough';
 
 const FIT_MARGIN_PX = 48;
 const EASE_PER_S = 9; // how fast the view follows
 // A machine that takes longer than this for a frame gets as long a rest after it: the page must stay alive.
 const SLOW_MS = 100;
 const MAX_REST_MS = 500;
+const WALK_SCALE = 40; // CSS pixels per metre that the floor of a walkthrough is chosen for
 
 export class MapView {
   viewport: Viewport = { x: 0, y: 0, scale: 80, turn: 0, width: 800, height: 600 };
@@ -40,6 +42,8 @@ export class MapView {
   private readonly marker = new CameraMarker();
   private readonly grid = new GridLines();
   private readonly tiles: TileScene;
+  private readonly ground = new Mesh(unitQuad(), groundMaterial(this.uniforms));
+  private walkthrough: Walkthrough | null = null;
   private scheduled = false;
   private waited = 0; // ms that the last frame had to wait for its turn
   private held = false;
@@ -55,10 +59,9 @@ export class MapView {
     this.canvas.tabIndex = 0;
     holder.prepend(this.canvas);
     this.tiles = new TileScene(this.renderer, live, this.uniforms);
-    const ground = new Mesh(unitQuad(), groundMaterial(this.uniforms));
-    ground.frustumCulled = false;
-    ground.renderOrder = -10;
-    this.scene.add(ground, this.tiles.group, this.grid.mesh, this.path.group, this.marker.group);
+    this.ground.frustumCulled = false;
+    this.ground.renderOrder = -10;
+    this.scene.add(this.ground, this.tiles.group, this.grid.mesh, this.path.group, this.marker.group);
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
     this.listen();
@@ -85,6 +88,16 @@ export class MapView {
         this.draw(now);
       });
     }, this.waited > SLOW_MS ? Math.min(MAX_REST_MS, this.waited) : 0);
+  }
+
+  /** Looks through a walker's eye instead of down on the map; null: back to the map. */
+  walk(walkthrough: Walkthrough | null): void {
+    if (this.walkthrough) this.scene.remove(this.walkthrough.group);
+    if (walkthrough) this.scene.add(walkthrough.group);
+    this.walkthrough = walkthrough;
+    this.ground.visible = this.path.group.visible = this.marker.group.visible = !walkthrough;
+    this.stale = { tiles: true, path: true, settings: true };
+    this.requestDraw();
   }
 
   /** While held, the picture stays as it is though the map goes on; letting go catches up. */
@@ -230,12 +243,26 @@ export class MapView {
     this.lastFrame = now;
     this.glide(seconds);
     if (!this.held) this.tiles.upload();
+    if (this.walkthrough) return this.drawWalk(this.walkthrough, seconds);
     this.refresh();
     this.eye.solid = this.settings.get().solid;
     this.eye.update(this.viewport);
     this.grid.update(this.viewport, this.eye.solid, this.eye.solid ? (this.live.info?.layers[0]?.zMin ?? 0) : 0);
     this.renderer.render(this.scene, this.eye.camera);
     this.drawn.emit(this.viewport);
+  }
+
+  private drawWalk(walk: Walkthrough, seconds: number): void {
+    const more = walk.frame(seconds, this.viewport.width / this.viewport.height);
+    const [x, y] = walk.walker.position;
+    const settings = this.settings.get();
+    if (this.stale.settings) this.refreshColours(settings);
+    this.grid.mesh.visible = false;
+    if (this.live.info) this.tiles.show({ ...this.viewport, x, y, turn: 0, scale: WALK_SCALE }, this.live.info, { ...settings, solid: false }, walk.floor);
+    this.stale.settings = false;
+    this.renderer.render(this.scene, walk.camera);
+    this.drawn.emit(this.viewport);
+    if (more) this.requestDraw();
   }
 
   private glide(seconds: number): void {

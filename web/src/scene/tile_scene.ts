@@ -65,13 +65,13 @@ export class TileScene {
   }
 
   /** Chooses what is to be seen from where one looks. */
-  show(view: Viewport, info: MapInfo, settings: Settings): void {
+  show(view: Viewport, info: MapInfo, settings: Settings, floor = settings.solid ? (info.layers[0]?.zMin ?? 0) : 0): void {
     const level = levelFor(view, info.cellSize, info.levels, this.renderer.getPixelRatio());
     const rect = visibleRect(view);
     const more = settings.solid ? Math.max(rect.xMax - rect.xMin, rect.yMax - rect.yMin) : 0; // a slanted eye sees further
     this.shown = tilesToDraw(this.live.tiles, grown(rect, more), level, info.cellSize);
     this.flat?.show(this.shown, info.cellSize);
-    this.flat?.setHeight(settings.solid ? (info.layers[0]?.zMin ?? 0) : 0);
+    this.flat?.setHeight(floor);
     this.showFloors(info, settings);
     if (settings.solid) this.solid.show(this.shown, info, settings);
     else this.solid.mesh.visible = false;
