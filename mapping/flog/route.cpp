@@ -95,7 +95,41 @@ RouteResult route_along(const Ground& ground, const std::vector<GridPlace>& corn
   return route;
 }
 
+/// Fills `reached` from `start` on over passable neighbours (four each: no corner is cut); returns how many.
+std::int64_t spread(const GridClearance& grid, GridPlace start, Image<std::uint8_t>& reached) {
+  std::vector<GridPlace> open{start};
+  reached.at(start.x, start.y) = 1;
+  std::int64_t count = 0;
+  while (!open.empty()) {
+    const GridPlace p = open.back();
+    open.pop_back();
+    ++count;
+    for (const GridPlace next : {GridPlace{p.x + 1, p.y}, {p.x - 1, p.y}, {p.x, p.y + 1}, {p.x, p.y - 1}}) {
+      if (!grid.passable(next) || reached.at(next.x, next.y) != 0) continue;
+      reached.at(next.x, next.y) = 1;
+      open.push_back(next);
+    }
+  }
+  return count;
+}
+
 }  // namespace
+
+ReachableArea find_reachable(const MapSnapshot& map, const RouteRequest& request) {
+  if (map.tiles.empty()) return {RouteOutcome::start_unknown, "the map is empty", {}, 0};
+  const Ground ground = ground_of(map, request);
+  const auto start =
+      snapped(ground.grid, ground.place(request.from_m), request.snap_m / map.info.grid.cell_size_m);
+  if (!start) {
+    const RouteResult why = no_place(ground, ground.place(request.from_m), true);
+    return {why.outcome, why.reason, {}, 0};
+  }
+  ReachableArea area{RouteOutcome::found, {}, ground.classes, 0};
+  area.reached.grey = Image<std::uint8_t>(ground.classes.grey.width, ground.classes.grey.height);
+  const double a = ground.classes.cell_size_m;
+  area.area_m2 = static_cast<double>(spread(ground.grid, *start, area.reached.grey)) * a * a;
+  return area;
+}
 
 RouteResult find_route(const MapSnapshot& map, const RouteRequest& request) {
   if (map.tiles.empty()) return no_way(RouteOutcome::start_unknown, "the map is empty");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mapping/flog/map_picture.hpp"
 #include "mapping/flog/map_rules.hpp"
 #include "mapping/tile_update.hpp"
 
@@ -43,5 +44,18 @@ struct RouteResult {
 
 /// Shortest way by A*, where narrow places cost up to three times their length. Unknown counts as occupied.
 RouteResult find_route(const MapSnapshot& map, const RouteRequest& request);
+
+/// Every cell that the middle of the robot can reach on ways known to be free.
+struct ReachableArea {
+  RouteOutcome outcome = RouteOutcome::unreachable;
+  std::string reason;  // in words, unless found
+  MapPicture reached;  // 1 where it can be, else 0
+  double area_m2 = 0;
+
+  [[nodiscard]] bool found() const { return outcome == RouteOutcome::found; }
+};
+
+/// `request.to_m` does not matter.
+ReachableArea find_reachable(const MapSnapshot& map, const RouteRequest& request);
 
 }  // namespace flogmap

@@ -1,5 +1,9 @@
-// POST /maps/{id}/route {from, to, robot_radius_m}: a path on the safe-for-motion map.
+// POST /maps/{id}/route {from, to, robot_radius_m, robot_height_m}: a path on the safe-for-motion map.
+// POST /maps/{id}/reachable {from, robot_radius_m, robot_height_m}: everywhere that such paths lead.
 #include "mapping/flog/route.hpp"
+
+#include <optional>
+#include <utility>
 
 #include "server/api/json_body.hpp"
 #include "server/api/resources.hpp"
@@ -9,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMostRadiusM = 5;
+constexpr double kMostRobotM = 5;
 
 /// [x, y] or {"x": .., "y": ..}, metres.
 Eigen::Vector2d point_field(const nlohmann::json& body, const char* name) {
@@ -22,25 +26,27 @@ Eigen::Vector2d point_field(const nlohmann::json& body, const char* name) {
   throw RefusedRequest(422, "bad-value", std::string(name) + " must be [x, y] in metres", name);
 }
 
-RouteRequest requested_route(const nlohmann::json& body, const ServeOptions& options, const MapInfo& info) {
+/// A length of the robot; nothing if the body does not name it.
+std::optional<double> robot_field(const nlohmann::json& body, const char* name) {
+  if (!body.contains(name)) return std::nullopt;
+  const double value = body[name].is_number() ? body[name].get<double>() : -1;
+  if (value >= 0 && value <= kMostRobotM) return value;
+  throw RefusedRequest(422, "bad-value", std::string(name) + " must be a number from 0 to 5", name);
+}
+
+Eigen::Vector2d place_field(const nlohmann::json& body, const char* name, const MapInfo& info) {
+  const Eigen::Vector2d place_m = point_field(body, name);
+  if (place_m.cwiseAbs().maxCoeff() < 1e9 * info.grid.cell_size_m) return place_m;
+  throw RefusedRequest(422, "bad-value", "no cell lies so far out", name);
+}
+
+/// All but where the robot wants to go.
+RouteRequest requested_start(const nlohmann::json& body, const ServeOptions& options, const MapInfo& info) {
   RouteRequest route;
-  route.from_m = point_field(body, "from");
-  route.to_m = point_field(body, "to");
-  const double most_m = 1e9 * info.grid.cell_size_m;
-  if (!(route.from_m.cwiseAbs().maxCoeff() < most_m))
-    throw RefusedRequest(422, "bad-value", "no cell lies so far out", "from");
-  if (!(route.to_m.cwiseAbs().maxCoeff() < most_m))
-    throw RefusedRequest(422, "bad-value", "no cell lies so far out", "to");
-  route.robot_radius_m = options.robot.radius_m;
-  if (body.contains("robot_radius_m")) {
-    const auto& radius = body["robot_radius_m"];
-    const double value = radius.is_number() ? radius.get<double>() : -1;
-    if (!(value >= 0 && value <= kMostRadiusM)) {
-      throw RefusedRequest(422, "bad-value", "robot_radius_m must be a number from 0 to 5", "robot_radius_m");
-    }
-    route.robot_radius_m = value;
-  }
-  if (options.robot.height_m > 0) route.heights = {0, options.robot.height_m};
+  route.from_m = place_field(body, "from", info);
+  route.robot_radius_m = robot_field(body, "robot_radius_m").value_or(options.robot.radius_m);
+  const double height_m = robot_field(body, "robot_height_m").value_or(options.robot.height_m);
+  if (height_m > 0) route.heights = {0, height_m};
   route.operators = options.operators;
   return route;
 }
@@ -79,15 +85,59 @@ ApiResponse answer_of(const MapSnapshot& map, const RouteRequest& request, const
 
 ApiAnswer post_route(const ApiRequest& request, ServerState& state) {
   ServedMap& map = requested_map(request, state);
-  const RouteRequest route = requested_route(json_body(request), state.options, map.board().info());
+  const nlohmann::json body = json_body(request);
+  RouteRequest route = requested_start(body, state.options, map.board().info());
+  route.to_m = place_field(body, "to", map.board().info());
   return ApiJob(
       [snapshot = map.snapshot(), route, epoch = map.epoch()] { return answer_of(*snapshot, route, epoch); });
+}
+
+/// Row by row from the lowest y: cells not reached, cells reached, cells not reached ...
+Json runs_of(const Image<std::uint8_t>& reached) {
+  Json runs = Json::array();
+  std::uint8_t now = 0;
+  std::int64_t length = 0;
+  for (int y = reached.height - 1; y >= 0; --y) {
+    for (int x = 0; x < reached.width; ++x) {
+      if (reached.at(x, y) == now) {
+        ++length;
+      } else {
+        runs.push_back(std::exchange(length, 1));
+        now = reached.at(x, y);
+      }
+    }
+  }
+  runs.push_back(length);
+  return runs;
+}
+
+ApiResponse reachable_answer(const MapSnapshot& map, const RouteRequest& request, const std::string& epoch) {
+  const ReachableArea area = find_reachable(map, request);
+  if (!area.found()) return problem(422, code_of(area.outcome), area.reason);
+  return json_response(Json{{"epoch", epoch},
+                            {"rev", map.revision},
+                            {"area_m2", area.area_m2},
+                            {"origin", {area.reached.origin_x_m(), area.reached.origin_y_m()}},
+                            {"cell_size", area.reached.cell_size_m},
+                            {"width", area.reached.grey.width},
+                            {"height", area.reached.grey.height},
+                            {"runs", runs_of(area.reached.grey)}}
+                           .dump());
+}
+
+ApiAnswer post_reachable(const ApiRequest& request, ServerState& state) {
+  ServedMap& map = requested_map(request, state);
+  const RouteRequest start = requested_start(json_body(request), state.options, map.board().info());
+  return ApiJob([snapshot = map.snapshot(), start, epoch = map.epoch()] {
+    return reachable_answer(*snapshot, start, epoch);
+  });
 }
 
 }  // namespace
 
 std::vector<Route> route_routes() {
-  return {{Method::post, "/api/v1/maps/{}/route", Role::view, post_route}};
+  return {{Method::post, "/api/v1/maps/{}/route", Role::view, post_route},
+          {Method::post, "/api/v1/maps/{}/reachable", Role::view, post_reachable}};
 }
 
 }  // namespace flogmap

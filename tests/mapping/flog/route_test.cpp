@@ -197,5 +197,35 @@ TEST(Route, FollowsTheMapAsItChanges) {
   EXPECT_FALSE(find_route(canvas.map(), way(1, 1, 7, 1, 0.3)).found());
 }
 
+/// Cells that the robot's middle may be in, by brute force over single steps.
+TEST(Reachable, IsWhereAWayLeadsAndNothingElse) {
+  const MapCanvas canvas = two_rooms(20);  // a door of 0.4 m
+  const MapSnapshot& map = canvas.map();
+  for (const double radius : {0.1, 0.3}) {
+    const ReachableArea area = find_reachable(map, way(1, 1, 0, 0, radius));
+    ASSERT_TRUE(area.found());
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> x(0.05, 7.9), y(0.05, 3.9);
+    for (int i = 0; i < 60; ++i) {
+      RouteRequest request = way(1, 1, x(random), y(random), radius);
+      request.snap_m = 0;
+      const CellIndex cell{static_cast<int>(request.to_m.x() / 0.02), static_cast<int>(request.to_m.y() / 0.02)};
+      const bool reached = area.reached.grey.at(area.reached.pixel_x(cell), area.reached.pixel_y(cell)) != 0;
+      EXPECT_EQ(reached, find_route(map, request).found()) << request.to_m.transpose();
+    }
+  }
+}
+
+TEST(Reachable, AWiderRobotReachesLessAndOneInAWallNothing) {
+  const MapCanvas canvas = two_rooms(20);
+  const MapSnapshot& map = canvas.map();
+  const double slim = find_reachable(map, way(1, 1, 0, 0, 0.1)).area_m2;
+  const double wide = find_reachable(map, way(1, 1, 0, 0, 0.3)).area_m2;
+  EXPECT_GT(slim, 2 * wide * 0.95);  // the other room too
+  EXPECT_NEAR(wide, (4 - 0.6) * (4 - 0.6), 0.4);
+  EXPECT_EQ(find_reachable(map, way(4.05, 1, 0, 0)).outcome, RouteOutcome::start_blocked);
+  EXPECT_EQ(find_reachable(map, way(99, 1, 0, 0)).outcome, RouteOutcome::start_unknown);
+}
+
 }  // namespace
 }  // namespace flogmap
