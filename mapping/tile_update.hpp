@@ -8,12 +8,15 @@
 
 #include "mapping/flog/cell.hpp"
 #include "mapping/flog/grid_spec.hpp"
+#include "mapping/tile_memory.hpp"
 
 namespace flogmap {
 
+using TileCells = std::vector<Cell, TileAllocator<Cell>>;
+
 /// 64 x 64 columns with all their layers: cells[layer * 4096 + column_in_tile(cell)].
 struct Tile {
-  std::vector<Cell> cells;     // num_layers * 4096
+  TileCells cells;             // num_layers * 4096
   std::uint64_t revision = 0;  // of the map change that last touched this tile
 };
 

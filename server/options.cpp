@@ -166,6 +166,12 @@ void add_source_options(OptionTable& table, Options& options) {
                    options.source.seed = static_cast<std::uint64_t>(value);
                  },
              .show = [&options] { return std::to_string(options.source.seed); }});
+  table.number("camera-rate", "HZ", options.source.camera_rate_hz, 0.5, 240, "of live cameras");
+  table.number("max-skew-ms", "MS", options.source.max_skew_ms, 0.01, 1000,
+               "live: pairs taken further apart are dropped");
+  table.number("exposure-us", "US", options.source.exposure_us, 0, 1e6,
+               "live: of both cameras; 0 = automatic, the right one like the left one");
+  table.number("gain", "FACTOR", options.source.gain, 0, 1000, "live: likewise");
 }
 
 void add_stereo_options(OptionTable& table, StereoOptions& stereo) {
@@ -189,6 +195,8 @@ void add_mapping_options(OptionTable& table, Options& options) {
                           "fuzzy and, or and not of the map's rules");
   table.choice<bool>("loop-closure", options.loop_closure, {{"on", true}, {"off", false}},
                      "recognise places seen before and correct path and map");
+  table.integer("map-memory", "MB", options.map_memory_mb, 0, 1 << 20,
+                "cells of the map kept in memory, about; others lie in a file and come back when needed; 0 = all");
   table.integer("threads", "N", options.num_threads, 0, kMaxThreads,
                 "per stage; 0 = every core. Same map for any N");
 }

@@ -28,6 +28,7 @@ struct Options {
   std::string store;     // serve: the map's file
   std::string maps_dir;  // serve: stored maps beside the live one
   std::string out_dir;   // map: where the files go
+  int map_memory_mb = 0;  // of the map's cells, about; 0 = all of them
   int num_threads = 0;   // of each stage that can use several; 0 = every core
 };
 

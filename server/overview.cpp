@@ -45,7 +45,7 @@ Cell overview_cell(const std::array<Cell, 4>& cells, float N_K) {
 
 Tile overview_tile(const ChildTiles& children, const MapInfo& info) {
   const int num_layers = info.grid.num_layers();
-  Tile tile{std::vector<Cell>(static_cast<std::size_t>(num_layers) * kTileColumns), 0};
+  Tile tile{TileCells(static_cast<std::size_t>(num_layers) * kTileColumns), 0};
   for (int child = 0; child < 4; ++child) {
     if (!children[child]) continue;
     tile.revision = std::max(tile.revision, children[child]->revision);

@@ -99,7 +99,7 @@ MapSnapshot merge_maps(const MapSnapshot& a, const MapSnapshot& b, const MapPlac
     const auto old = a.tiles.find(index);
     auto tile = old != a.tiles.end() ? std::make_shared<Tile>(*old->second) : std::make_shared<Tile>();
     tile->cells.resize(std::size_t(grid.num_layers()) * kTileColumns);
-    const std::vector<Cell> before = tile->cells;
+    const TileCells before = tile->cells;
     for (int i = 0; i < kTileColumns; ++i) {
       const CellIndex first = first_cell(index);
       const auto columns = placement.columns_of_b({first.x + (i & kTileMask), first.y + (i >> kTileShift)});

@@ -116,6 +116,7 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   if (options.out_dir.empty()) throw UsageError("--out is missing; for instance --out /tmp/map");
   MappingSession session = open_session(options);
   make_folder(options.out_dir);
+  limit_map_memory(options);
   const StereoCamera camera = session.front_end.camera();
   const std::int64_t num_frames = frames_to_map(session.source->info(), max_frames);
   MapCollector collector(num_frames);

@@ -1,9 +1,12 @@
 #include "server/commands/mapping_session.hpp"
 
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "mapping/odometry/trajectory_error.hpp"
+#include "mapping/tile_memory.hpp"
 
 namespace flogmap {
 namespace {
@@ -88,6 +91,20 @@ json camera_json(const CameraIntrinsics& camera) {
 }
 
 }  // namespace
+
+void limit_map_memory(const Options& options) {
+  if (options.map_memory_mb == 0) return;
+  namespace fs = std::filesystem;
+  const char* temporary = std::getenv("TMPDIR");
+  fs::path folder = temporary != nullptr ? temporary : "/var/tmp";  // not /tmp, which may be memory itself
+  if (!options.out_dir.empty()) folder = options.out_dir;
+  if (!options.store.empty()) folder = fs::absolute(options.store).parent_path();
+  try {
+    TileMemory::keep_within(static_cast<std::size_t>(options.map_memory_mb) << 20U, folder);
+  } catch (const std::exception& error) {
+    throw UsageError("--map-memory " + std::to_string(options.map_memory_mb) + ": " + error.what());
+  }
+}
 
 MappingSession open_session(const Options& options) {
   try {

@@ -21,6 +21,10 @@ struct MappingSession {
   MapIntegrator integrator;
 };
 
+/// Keeps --map-memory, before the first tile is made: the rest lies beside the store or the output, or else
+/// where temporary files that outlive memory go. Throws UsageError if no file can be made there.
+void limit_map_memory(const Options& options);
+
 /// Opens source and calibration, reads given poses, and makes front end and map.
 /// Throws UsageError naming file, field and value if any of them cannot be used.
 MappingSession open_session(const Options& options);

@@ -257,6 +257,7 @@ RunCommand add_serve(CLI::App& app) {
     HubInfo info;
     info.config_json = state->table.effective().dump();
     info.version = FLOGMAP_VERSION;
+    limit_map_memory(options);
     return options.source.spec.empty() ? serve_stored(options, info) : serve_source(options, info);
   };
 }

@@ -59,14 +59,14 @@ std::vector<std::uint8_t> TileCodec::encode(const Tile& tile) {
   return bytes;
 }
 
-std::optional<std::vector<Cell>> TileCodec::decode(std::span<const std::uint8_t> bytes) {
+std::optional<TileCells> TileCodec::decode(std::span<const std::uint8_t> bytes) {
   auto& plain = buffers_->plain;
   plain.resize(buffers_->num_cells * kCellBytes);
   // Without a place for the produced size, anything but exactly plain.size() bytes is an error.
   const auto result = libdeflate_zlib_decompress(buffers_->decompressor.get(), bytes.data(), bytes.size(),
                                                  plain.data(), plain.size(), nullptr);
   if (result != LIBDEFLATE_SUCCESS) return std::nullopt;
-  std::vector<Cell> cells(buffers_->num_cells);
+  TileCells cells(buffers_->num_cells);
   const std::uint8_t* at = plain.data();
   for (Cell& cell : cells) {
     cell = {u16(at), u16(at + 2), u16(at + 4), u16(at + 6)};

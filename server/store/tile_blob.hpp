@@ -24,7 +24,7 @@ class TileCodec {
   /// zlib (RFC 1950) bytes. The tile must have num_layers * 4096 cells.
   [[nodiscard]] std::vector<std::uint8_t> encode(const Tile& tile);
   /// Nothing if the bytes are not exactly one tile of this many layers.
-  [[nodiscard]] std::optional<std::vector<Cell>> decode(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] std::optional<TileCells> decode(std::span<const std::uint8_t> bytes);
 
  private:
   struct Buffers;

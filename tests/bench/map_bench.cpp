@@ -58,7 +58,7 @@ double large_map_ratio(const BenchViews& bench, int tiles) {
   MapIntegrator integrator = integrator_for(bench, 0.02, IntegratorKind::fan, 1);
   const double small = time_views(bench, integrator, kRepeats, cpu_ms);
   MapSnapshot large{integrator.info(), 1, {}};
-  auto tile = std::make_shared<Tile>(Tile{std::vector<Cell>(3 * kTileColumns, Cell{100, 100, 100, 0}), 1});
+  auto tile = std::make_shared<Tile>(Tile{TileCells(3 * kTileColumns, Cell{100, 100, 100, 0}), 1});
   for (int i = 0; i < tiles; ++i) large.tiles[{i % 142 - 71, i / 142 - 71}] = std::make_shared<Tile>(*tile);
   integrator.restore(large);
   large.tiles.clear();

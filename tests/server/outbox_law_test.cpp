@@ -126,7 +126,7 @@ class Schedule {
         updates.push_back({index, revision_, nullptr});
         continue;
       }
-      Tile tile{std::vector<Cell>(kTileColumns), revision_};
+      Tile tile{TileCells(kTileColumns), revision_};
       for (int n = 0; n < 60; ++n) {
         const auto E = static_cast<std::uint16_t>(pick(30000)), O = static_cast<std::uint16_t>(pick(30000));
         tile.cells[pick(kTileColumns)] = {E, O, static_cast<std::uint16_t>(1 + pick(20)), O};

@@ -20,9 +20,9 @@ struct Difference {
 };
 
 void compare(const Tile* fan, const Tile* reference, Difference& d) {
-  const std::vector<Cell> none((fan ? fan : reference)->cells.size());
-  const std::vector<Cell>& a = fan ? fan->cells : none;
-  const std::vector<Cell>& b = reference ? reference->cells : none;
+  const TileCells none((fan ? fan : reference)->cells.size());
+  const TileCells& a = fan ? fan->cells : none;
+  const TileCells& b = reference ? reference->cells : none;
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (a[i].rays == 0 && b[i].rays == 0) continue;
     const double dE = std::abs(mu_E(a[i]) - mu_E(b[i])), dO = std::abs(mu_O(a[i]) - mu_O(b[i]));

@@ -22,7 +22,7 @@ class MapCanvas {
   void set(CellIndex cell, int layer, Cell value) {
     auto& tile = tiles_[tile_of(cell)];
     const std::size_t size = map_.info.full_confidence_rays.size() * kTileColumns;
-    if (!tile) tile = std::make_shared<Tile>(Tile{std::vector<Cell>(size), 1});
+    if (!tile) tile = std::make_shared<Tile>(Tile{TileCells(size), 1});
     tile->cells[std::size_t(layer) * kTileColumns + column_in_tile(cell)] = value;
     map_.tiles[tile_of(cell)] = tile;
   }

@@ -315,7 +315,7 @@ TEST(MapIntegrator, ReplacingTheMapPublishesOnlyWhatDiffers) {
     changed.insert(update.index);
     EXPECT_EQ(update.revision, before.revision + 1);
     const auto wanted = rebuilt.tiles.find(update.index);
-    const auto unseen = std::vector<Cell>(3 * kTileColumns);
+    const auto unseen = TileCells(3 * kTileColumns);
     EXPECT_EQ(update.tile->cells, wanted == rebuilt.tiles.end() ? unseen : wanted->second->cells);
   }
   for (const auto& [index, tile] : before.tiles) {
