@@ -1,7 +1,8 @@
 #include "server/pipeline.hpp"
 
-#include <random>
 #include <utility>
+
+#include "server/random_epoch.hpp"
 
 namespace flogmap {
 namespace {
@@ -9,21 +10,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t kFrameQueue = 2;
 constexpr std::chrono::milliseconds kStatusEvery{500};
-constexpr double kNsPerSecond = 1e9;
-
-constexpr const char* kPlaceUnknown = "not found again after a loss: show a place that is mapped already";
+constexpr const char* kPlaceUnknown =
+    "not found again after a loss: show a mapped place (needs loop closure)";
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-/// A name for a map that no other has: 16 hex digits.
-std::string random_epoch() {
-  std::random_device random;
-  static constexpr const char* kDigits = "0123456789abcdef";
-  std::string epoch;
-  for (int i = 0; i < 16; ++i) epoch += kDigits[random() & 15U];
-  return epoch;
 }
 
 }  // namespace
@@ -142,7 +133,7 @@ void Pipeline::at_end() {
 void Pipeline::restart(const std::string& reason, double position_s) {
   const SourceInfo info = source_->info();
   if (!info.live && !info.endless) {
-    source_->seek(info.first_timestamp_ns + static_cast<std::int64_t>(position_s * kNsPerSecond));
+    source_->seek(info.first_timestamp_ns + static_cast<std::int64_t>(position_s * 1e9));
   }
   frames_read_ = 0;
   generation_ = {generation_.number + 1, random_epoch(), reason};
@@ -156,8 +147,7 @@ void Pipeline::go_to(double position_s) {
   if (position_s < now_s || control_.state() == SessionState::finished) {
     restart("the recording was wound back", position_s);
   } else {
-    control_.hurry_until(source_->info().first_timestamp_ns +
-                         static_cast<std::int64_t>(position_s * kNsPerSecond));
+    control_.hurry_until(source_->info().first_timestamp_ns + static_cast<std::int64_t>(position_s * 1e9));
   }
 }
 
@@ -188,10 +178,10 @@ void Pipeline::see() {
 /// Poses to the observer, views to the map and to where loops are found.
 void Pipeline::pass_on(FrontEndResult& result) {
   const std::vector<TrajectoryEntry> placed = path_.add(result.path);
+  unplaced_frames_ = path_.num_unplaced();
   {
     const std::scoped_lock lock(counters_mutex_);
     counters_.mapped_views += result.views.size();
-    unplaced_frames_ = path_.num_unplaced();
   }
   if (!placed.empty()) observer_.path_grew(placed);
   for (View& view : result.views) {
@@ -210,10 +200,7 @@ void Pipeline::correct_path() {
   std::optional<PathCorrection> correction = loops_ ? loops_->take() : std::nullopt;
   if (!correction) return;
   path_.correct(*correction);
-  {
-    const std::scoped_lock lock(counters_mutex_);
-    unplaced_frames_ = path_.num_unplaced();
-  }
+  unplaced_frames_ = path_.num_unplaced();
   observer_.path_rewritten(path_.corrected());
   map_.correct(*std::move(correction));
 }
@@ -232,9 +219,23 @@ void Pipeline::begin_generation(const Generation& generation) {
     front_end_.reset();
   }
   seen_generation_ = generation.number;
+  {
+    const std::scoped_lock lock(counters_mutex_);
+    counters_.tracked -= unplaced_frames_;  // their place was never found
+    counters_.lost += unplaced_frames_.exchange(0);
+  }
   path_ = CorrectedPath(begin.trajectory);
   if (loops_) loops_->begin_map();
   map_.begin(std::move(begin));
+}
+
+/// Where the frame stands in the map; lost for those who look on while that is unknown.
+void Pipeline::put_into_map(std::int64_t timestamp_ns, FrontEndResult& result) const {
+  Tracking& tracking = result.tracking;
+  result.world_from_camera = path_.place(timestamp_ns, tracking.segment, *result.world_from_camera);
+  if (result.world_from_camera) return;
+  tracking.state = TrackingState::lost;
+  tracking.reason = kPlaceUnknown;
 }
 
 void Pipeline::report(const Captured& captured, FrontEndResult& result) {
@@ -242,15 +243,12 @@ void Pipeline::report(const Captured& captured, FrontEndResult& result) {
   statistics_.add(Stage::disparity, result.times.disparity_ms);
   statistics_.add(Stage::odometry, result.times.odometry_ms);
   const std::int64_t timestamp_ns = captured.frame->timestamp_ns;
-  if (result.world_from_camera) {
-    result.world_from_camera = path_.place(timestamp_ns, result.tracking.segment, *result.world_from_camera);
-    if (!result.world_from_camera) result.tracking.reason = kPlaceUnknown;
-  }
   {
     const std::scoped_lock lock(counters_mutex_);
     ++counters_.frames;
     counters_.tracked += result.tracking.has_pose() ? 1 : 0;
     counters_.lost += result.tracking.state == TrackingState::lost ? 1 : 0;
+    if (result.world_from_camera) put_into_map(timestamp_ns, result);
     counters_.warnings.clear();
     if (!result.tracking.reason.empty()) counters_.warnings.push_back(result.tracking.reason);
   }
@@ -283,10 +281,11 @@ StatusReport Pipeline::status() const {
   {
     const std::scoped_lock lock(counters_mutex_);
     report = counters_;
-    report.tracked -= unplaced_frames_;
-    report.lost += unplaced_frames_;
     skipped = skipped_;
   }
+  const std::uint64_t unplaced = unplaced_frames_;
+  report.tracked -= unplaced;
+  report.lost += unplaced;
   report.waiting_views = map_.num_waiting();
   report.loops = loops_ ? loops_->num_loops() : 0;
   report.skipped_frames = static_cast<std::uint64_t>(skipped.count);

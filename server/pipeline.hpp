@@ -2,6 +2,7 @@
 // mapping/front_end.cpp, and you know the program.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <exception>
 #include <memory>
@@ -83,6 +84,7 @@ class Pipeline {
   void see();
   void begin_generation(const Generation& generation);
   void pass_on(FrontEndResult& result);
+  void put_into_map(std::int64_t timestamp_ns, FrontEndResult& result) const;
   void report(const Captured& captured, FrontEndResult& result);
   void wait_for_loops();
   void correct_path();
@@ -109,7 +111,7 @@ class Pipeline {
 
   mutable std::mutex counters_mutex_;
   StatusReport counters_;
-  std::uint64_t unplaced_frames_ = 0;
+  std::atomic<std::uint64_t> unplaced_frames_ = 0;  // that wait for their place
   SkippedFrames skipped_;
   std::exception_ptr failure_;
   std::vector<std::jthread> threads_;

@@ -45,6 +45,8 @@ void collect(ServerState& state) {
   metrics.set("flogmap_frames_skipped", "Frames that could not be read",
               static_cast<double>(report.skipped_frames));
   metrics.set("flogmap_views_mapped", "Views in the map", static_cast<double>(report.mapped_views));
+  metrics.set("flogmap_views_waiting", "Views whose place in the map is not known yet",
+              static_cast<double>(report.waiting_views));
   metrics.set("flogmap_loops", "Loops closed", static_cast<double>(report.loops));
   for (const StageReport& stage : report.stages) {
     metrics.set_stage(stage.stage, "0.5", stage.median_ms / 1000);

@@ -21,6 +21,7 @@ ApiResponse session_response(ServerState& state) {
                {"tracked", report.tracked},
                {"lost", report.lost},
                {"mapped_views", report.mapped_views},
+               {"waiting_views", report.waiting_views},
                {"loops", report.loops},
                {"dropped_frames", report.dropped_frames},
                {"skipped_frames", report.skipped_frames},
