@@ -23,6 +23,7 @@ struct PicturePairList {
   SkippedFrames skipped;           // pairs left out while listing
   std::optional<StereoCalibration> calibration;
   std::optional<Eigen::Vector3d> up_in_left_camera;
+  std::optional<PairSkew> skew;
 
   void skip(std::string reason) { ++skipped.count, skipped.last_reason = std::move(reason); }
 };
@@ -38,6 +39,7 @@ class PicturePairSource final : public StereoSource {
   [[nodiscard]] SourceInfo info() const override;
   [[nodiscard]] std::optional<StereoCalibration> calibration() const override { return list_.calibration; }
   [[nodiscard]] SkippedFrames skipped() const override { return list_.skipped; }
+  [[nodiscard]] std::optional<PairSkew> skew() const override { return list_.skew; }
   bool seek(std::int64_t timestamp_ns) override;
   [[nodiscard]] std::optional<Eigen::Vector3d> up_in_left_camera() const override {
     return list_.up_in_left_camera;

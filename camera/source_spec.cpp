@@ -9,6 +9,7 @@
 #include "camera/euroc_source.hpp"
 #include "camera/images_source.hpp"
 #include "camera/kitti_source.hpp"
+#include "camera/live/live_source.hpp"
 #include "camera/simulated_source.hpp"
 #include "camera/simulation/scene_json.hpp"
 #include "camera/video_source.hpp"
@@ -62,9 +63,13 @@ std::unique_ptr<StereoSource> open_side_by_side(const SourceOptions& options, co
                      .calibration = read_calibration(options.calibration_file)});
 }
 
-std::unique_ptr<StereoSource> no_live_cameras(const SourceOptions& options, const std::string&) {
-  throw std::runtime_error("source '" + options.spec +
-                           "': this build has no live cameras (libcamera was not found)");
+std::unique_ptr<StereoSource> open_cameras(const SourceOptions& options, const std::string& where) {
+  LiveSpec live{.spec = options.spec, .where = where, .calibration = std::nullopt, .live = {}};
+  if (!options.calibration_file.empty()) live.calibration = read_calibration(options.calibration_file);
+  live.live = {.rate_hz = options.camera_rate_hz, .max_skew_ms = options.max_skew_ms};
+  live.exposure_us = options.exposure_us;
+  live.gain = options.gain;
+  return open_live(std::move(live));
 }
 
 std::unique_ptr<StereoSource> open_simulated(const SourceOptions& options, const std::string& where) {
@@ -83,7 +88,7 @@ constexpr std::array kKinds{
     Kind{"video", "LEFT,RIGHT", open_videos},
     Kind{"sbs", "FILE", open_side_by_side},
     Kind{"sim", "SCENE", open_simulated},
-    Kind{"libcamera", "LEFT_ID,RIGHT_ID", no_live_cameras},
+    Kind{"libcamera", "LEFT_ID,RIGHT_ID", open_cameras},
 };
 
 }  // namespace

@@ -14,6 +14,11 @@ struct SourceOptions {
   std::string calibration_file{};  // overrides what the source carries; empty: the source's own
   bool loop = false;       // a recording begins again at its end; the drop of its timestamp tells the wrap
   std::uint64_t seed = 1;  // of everything random in a simulated source
+  // live cameras
+  double camera_rate_hz = 20;
+  double max_skew_ms = 5;  // pairs taken further apart are dropped
+  double exposure_us = 0;  // 0: automatic; both cameras alike
+  double gain = 0;         // 0: automatic
 };
 
 /// The kinds of sources this build knows, as "euroc, kitti, ...", for messages and help.

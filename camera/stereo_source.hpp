@@ -26,6 +26,12 @@ struct SkippedFrames {
   std::string last_reason;  // names the file, as "cam0/data/17.png: truncated PNG"
 };
 
+/// How far apart the two pictures of the pairs were taken.
+struct PairSkew {
+  double mean_ms = 0;     // of the absolute values
+  double largest_ms = 0;  // up to the bound above which pictures are no pair
+};
+
 /// Where stereo pairs come from. All calls but stop() are made by one thread.
 /// Opening a source throws std::runtime_error with file, field and value if it cannot deliver anything.
 class StereoSource {
@@ -45,6 +51,9 @@ class StereoSource {
   [[nodiscard]] virtual std::optional<StereoCalibration> calibration() const = 0;
 
   [[nodiscard]] virtual SkippedFrames skipped() const { return {}; }
+
+  /// Nothing where pairs have one time only.
+  [[nodiscard]] virtual std::optional<PairSkew> skew() const { return std::nullopt; }
 
   /// Goes to the first frame at or after this time; false where the source cannot.
   virtual bool seek(std::int64_t /*timestamp_ns*/) { return false; }

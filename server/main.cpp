@@ -25,6 +25,8 @@ constexpr Command kCommands[] = {
     {"simulate", "render a recording with exact ground truth", flogmap::add_simulate},
     {"record", "write what a source delivers as a recording", flogmap::add_record},
     {"calibrate", "stereo calibration from pictures of a board, with a verdict", flogmap::add_calibrate},
+    {"calib", "check: does a calibration suit the pictures?", flogmap::add_calib},
+    {"cameras", "list the cameras that libcamera sees", flogmap::add_cameras},
 };
 
 int complain(const std::string& message, int exit_code) {

@@ -12,7 +12,9 @@ flogmap_target(pipeline SOURCES capture_control.cpp loop_stage.cpp map_stage.cpp
 flogmap_target(flogmap EXECUTABLE
   SOURCES
     main.cpp
+    commands/calib_check.cpp
     commands/calibrate.cpp
+    commands/cameras.cpp
     commands/disparity.cpp
     commands/evaluate.cpp
     commands/evaluate_map.cpp

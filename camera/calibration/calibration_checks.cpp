@@ -115,7 +115,8 @@ void fit_resolution(StereoCalibration& calibration, int width_px, int height_px,
     if (camera->width_px == 0) camera->width_px = width_px, camera->height_px = height_px;
     if (camera->width_px == width_px && camera->height_px == height_px) continue;
     throw std::runtime_error(where + ": pictures are " + size(width_px, height_px) + ", but " +
-                             calibration.origin + " is for " + size(camera->width_px, camera->height_px));
+                             calibration.origin + " is for " + size(camera->width_px, camera->height_px) +
+                             "; calibrate at this resolution, or scale fx, fy, cx, cy");
   }
 }
 

@@ -23,5 +23,7 @@ RunCommand add_simulate(CLI::App& app);
 RunCommand add_record(CLI::App& app);
 RunCommand add_merge(CLI::App& app);
 RunCommand add_calibrate(CLI::App& app);
+RunCommand add_calib(CLI::App& app);
+RunCommand add_cameras(CLI::App& app);
 
 }  // namespace flogmap

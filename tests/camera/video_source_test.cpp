@@ -87,10 +87,5 @@ TEST_F(Videos, WhatCannotBeReadIsRefusedInWords) {
   refused("sbs:" + path("wide.avi"), "", "--calibration");
 }
 
-TEST(LiveCameras, AreSaidToBeMissingWhereTheBuildHasNone) {
-  EXPECT_THAT([] { static_cast<void>(open_source({.spec = "libcamera:a,b"})); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("no live cameras")));
-}
-
 }  // namespace
 }  // namespace flogmap

@@ -1,0 +1,257 @@
+#include "camera/live/libcamera_camera.hpp"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace flogmap {
+namespace {
+
+namespace lc = libcamera;
+
+constexpr unsigned kBuffers = 4;
+
+std::int64_t period_of(double rate_hz) { return std::llround(1e9 / rate_hz); }
+
+/// Raspberry Pi's controls exist by name only where its own fork of libcamera is installed.
+std::optional<unsigned> control_named(const lc::ControlInfoMap& controls, const std::string& name) {
+  for (const auto& [id, info] : controls) {
+    if (id->name() == name) return id->id();
+  }
+  return std::nullopt;
+}
+
+/// The formats that we read, best first: grey, then luma planes, then mosaics.
+std::optional<lc::PixelFormat> best_format(const lc::StreamFormats& formats) {
+  for (const char* name : {"NV12", "YUV420", "NV21", "R8", "YUYV", "R10_CSI2P", "SRGGB8", "SGRBG8", "SGBRG8",
+                           "SBGGR8", "SRGGB10_CSI2P", "SGRBG10_CSI2P", "SGBRG10_CSI2P", "SBGGR10_CSI2P"}) {
+    for (const lc::PixelFormat& format : formats.pixelformats()) {
+      if (format.toString() == name) return format;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+LibcameraCamera::LibcameraCamera(std::shared_ptr<lc::Camera> camera, Side side, const RigOptions& options,
+                                 OnPicture on_picture, OnLost on_lost)
+    : camera_(std::move(camera)),
+      side_(side),
+      period_ns_(period_of(options.rate_hz)),
+      on_picture_(std::move(on_picture)),
+      on_lost_(std::move(on_lost)),
+      tokens_(kBuffers),
+      tokens_at_(Clock::now()) {
+  if (camera_->acquire() != 0)
+    throw std::runtime_error("camera " + camera_->id() + " is in use by another program");
+  try {
+    configure(options);
+    make_requests();
+    camera_->requestCompleted.connect(this, &LibcameraCamera::completed);
+    camera_->disconnected.connect(this, &LibcameraCamera::was_disconnected);
+    const lc::ControlList controls = first_controls(options);
+    if (camera_->start(&controls) != 0)
+      throw std::runtime_error("camera " + camera_->id() + " does not start");
+    running_ = true;
+  } catch (...) {
+    camera_->requestCompleted.disconnect(this);
+    camera_->disconnected.disconnect(this);
+    allocator_.reset();
+    camera_->release();
+    throw;
+  }
+}
+
+LibcameraCamera::~LibcameraCamera() {
+  {
+    const std::scoped_lock lock(mutex_);
+    running_ = false;
+  }
+  camera_->stop();
+  camera_->requestCompleted.disconnect(this);
+  camera_->disconnected.disconnect(this);
+  requests_.clear();
+  for (const auto& [buffer, mapping] : mappings_) ::munmap(mapping.address, mapping.size);
+  own_buffers_.clear();
+  allocator_.reset();
+  camera_->release();
+}
+
+bool LibcameraCamera::has(const lc::ControlId& control) const {
+  return camera_->controls().count(control.id()) > 0;
+}
+
+void LibcameraCamera::configure(const RigOptions& options) {
+  const std::string name = "camera " + camera_->id();
+  configuration_ = camera_->generateConfiguration({lc::StreamRole::VideoRecording});
+  if (!configuration_ || configuration_->empty()) throw std::runtime_error(name + " has no video stream");
+  lc::StreamConfiguration& stream = configuration_->at(0);
+  if (const auto format = best_format(stream.formats())) stream.pixelFormat = *format;
+  stream.size = lc::Size(static_cast<unsigned>(options.width_px), static_cast<unsigned>(options.height_px));
+  stream.bufferCount = kBuffers;
+  if (configuration_->validate() == lc::CameraConfiguration::Invalid)
+    throw std::runtime_error(name + " has no usable configuration");
+  const auto layout = luma_layout(stream.pixelFormat.toString());
+  if (!layout)
+    throw std::runtime_error(name + " delivers " + stream.pixelFormat.toString() + ", which is not read");
+  layout_ = *layout;
+  if (stream.size.width != static_cast<unsigned>(options.width_px) ||
+      stream.size.height != static_cast<unsigned>(options.height_px)) {
+    throw std::runtime_error(name + " cannot deliver " + std::to_string(options.width_px) + "x" +
+                             std::to_string(options.height_px) + " (nearest: " + stream.size.toString() +
+                             "); the calibration says the resolution");
+  }
+  if (camera_->configure(configuration_.get()) != 0)
+    throw std::runtime_error(name + " refuses its configuration");
+  stream_ = stream.stream();
+  sync_mode_ = control_named(camera_->controls(), "SyncMode");
+}
+
+/// Buffers of the kernel's, or, where it has no device for them, plain memory.
+void LibcameraCamera::make_requests() {
+  allocator_ = std::make_unique<lc::FrameBufferAllocator>(camera_);
+  std::vector<lc::FrameBuffer*> buffers;
+  if (allocator_->allocate(stream_) > 0) {
+    for (const auto& buffer : allocator_->buffers(stream_)) buffers.push_back(buffer.get());
+  } else if (make_memory_buffers()) {
+    for (const auto& buffer : own_buffers_) buffers.push_back(buffer.get());
+  } else {
+    throw std::runtime_error("camera " + camera_->id() + ": no memory for pictures");
+  }
+  for (lc::FrameBuffer* buffer : buffers) {
+    map_buffer(*buffer);
+    std::unique_ptr<lc::Request> request = camera_->createRequest();
+    if (!request || request->addBuffer(stream_, buffer) != 0)
+      throw std::runtime_error("camera " + camera_->id() + ": no request could be made");
+    free_.push_back(request.get());
+    requests_.push_back(std::move(request));
+  }
+}
+
+bool LibcameraCamera::make_memory_buffers() {
+  const lc::StreamConfiguration& stream = configuration_->at(0);
+  if (stream.frameSize == 0) return false;
+  const unsigned luma = stream.stride * stream.size.height;
+  for (unsigned i = 0; i < kBuffers; ++i) {
+    const int file = ::memfd_create("flogmap-picture", MFD_CLOEXEC);
+    if (file < 0 || ::ftruncate(file, static_cast<off_t>(stream.frameSize)) != 0) return false;
+    const lc::SharedFD shared(lc::UniqueFD{file});
+    std::vector<lc::FrameBuffer::Plane> planes(1);
+    planes[0].fd = shared;
+    planes[0].offset = 0;
+    planes[0].length = std::min(luma, stream.frameSize);
+    if (stream.frameSize > luma) {
+      planes.push_back(planes[0]);
+      planes[1].offset = luma;
+      planes[1].length = stream.frameSize - luma;
+    }
+    own_buffers_.push_back(std::make_unique<lc::FrameBuffer>(planes));
+  }
+  return true;
+}
+
+/// Kernel buffers are mapped from their beginning; a plane begins at its offset.
+void LibcameraCamera::map_buffer(const lc::FrameBuffer& buffer) {
+  const auto& plane = buffer.planes()[0];
+  const std::size_t size = plane.offset + plane.length;
+  void* address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, plane.fd.get(), 0);
+  if (address == MAP_FAILED)
+    throw std::runtime_error("camera " + camera_->id() + ": pictures cannot be mapped");
+  mappings_[&buffer] = {address, size};
+}
+
+lc::ControlList LibcameraCamera::first_controls(const RigOptions& options) {
+  lc::ControlList controls(camera_->controls());
+  if (has(lc::controls::FrameDurationLimits)) {
+    const std::array<std::int64_t, 2> limits_us{period_ns_ / 1000, period_ns_ / 1000};
+    controls.set(lc::controls::FrameDurationLimits, lc::Span<const std::int64_t, 2>(limits_us));
+  }
+  const bool fixed = options.exposure_us > 0 || options.gain > 0;
+  if (fixed && has(lc::controls::AeEnable)) controls.set(lc::controls::AeEnable, false);
+  if (options.exposure_us > 0 && has(lc::controls::ExposureTime))
+    controls.set(lc::controls::ExposureTime, static_cast<std::int32_t>(options.exposure_us));
+  if (options.gain > 0 && has(lc::controls::AnalogueGain))
+    controls.set(lc::controls::AnalogueGain, static_cast<float>(options.gain));
+  if (sync_mode_) {
+    constexpr std::int32_t kServer = 1, kClient = 2;
+    controls.set(*sync_mode_, lc::ControlValue(side_ == Side::left ? kServer : kClient));
+  }
+  return controls;
+}
+
+LibcameraCamera::Clock::time_point LibcameraCamera::queue_free_requests() {
+  const std::scoped_lock lock(mutex_);
+  const auto now = Clock::now();
+  // A little faster than the frame rate, so that a sensor never waits for a buffer.
+  constexpr double kFaster = 1.02;
+  const double per_ns = kFaster / static_cast<double>(period_ns_);
+  tokens_ = std::min<double>(kBuffers, tokens_ + per_ns * static_cast<double>((now - tokens_at_).count()));
+  tokens_at_ = now;
+  while (running_ && !free_.empty() && tokens_ >= 1) {
+    lc::Request* request = free_.front();
+    free_.erase(free_.begin());
+    if (wanted_duration_ns_ && has(lc::controls::FrameDurationLimits)) {
+      const std::array<std::int64_t, 2> limits_us{*wanted_duration_ns_ / 1000, *wanted_duration_ns_ / 1000};
+      request->controls().set(lc::controls::FrameDurationLimits, lc::Span<const std::int64_t, 2>(limits_us));
+    }
+    if (wanted_exposure_ && has(lc::controls::ExposureTime) && has(lc::controls::AnalogueGain)) {
+      if (has(lc::controls::AeEnable)) request->controls().set(lc::controls::AeEnable, false);
+      request->controls().set(lc::controls::ExposureTime, static_cast<std::int32_t>(wanted_exposure_->first));
+      request->controls().set(lc::controls::AnalogueGain, static_cast<float>(wanted_exposure_->second));
+    }
+    wanted_duration_ns_.reset();
+    wanted_exposure_.reset();
+    if (camera_->queueRequest(request) != 0) break;  // the camera is going away
+    tokens_ -= 1;
+  }
+  const double short_of = std::max(0.0, 1 - tokens_);
+  return now + std::chrono::nanoseconds(std::llround(short_of / per_ns));
+}
+
+void LibcameraCamera::set_duration(std::int64_t duration_ns) {
+  const std::scoped_lock lock(mutex_);
+  wanted_duration_ns_ = duration_ns;
+}
+
+void LibcameraCamera::set_exposure(double exposure_us, double gain) {
+  const std::scoped_lock lock(mutex_);
+  wanted_exposure_ = {exposure_us, gain};
+}
+
+std::optional<RigPicture> LibcameraCamera::picture_of(lc::Request* request) const {
+  const auto& [stream, buffer] = *request->buffers().begin();
+  const lc::ControlList& metadata = request->metadata();
+  const auto taken = metadata.get(lc::controls::SensorTimestamp);
+  const auto mapping = mappings_.find(buffer);
+  if (!taken || mapping == mappings_.end()) return std::nullopt;
+  const auto& plane = buffer->planes()[0];
+  const lc::StreamConfiguration& configuration = stream->configuration();
+  const RawPlane raw{static_cast<const std::uint8_t*>(mapping->second.address) + plane.offset, plane.length,
+                     configuration.stride, static_cast<int>(configuration.size.width),
+                     static_cast<int>(configuration.size.height)};
+  RigPicture picture{side_, {*taken, grey_from_plane(raw, layout_)}, 0, 0};
+  if (const auto exposure = metadata.get(lc::controls::ExposureTime)) picture.exposure_us = *exposure;
+  if (const auto gain = metadata.get(lc::controls::AnalogueGain)) picture.gain = *gain;
+  return picture.picture.picture.empty() ? std::nullopt : std::optional(std::move(picture));
+}
+
+void LibcameraCamera::completed(lc::Request* request) {
+  if (request->status() == lc::Request::RequestCancelled) return;
+  std::optional<RigPicture> picture = picture_of(request);
+  request->reuse(lc::Request::ReuseBuffers);
+  {
+    const std::scoped_lock lock(mutex_);
+    free_.push_back(request);
+  }
+  if (picture) on_picture_(std::move(*picture));
+}
+
+void LibcameraCamera::was_disconnected() { on_lost_("camera " + camera_->id() + " was unplugged"); }
+
+}  // namespace flogmap
