@@ -1,5 +1,7 @@
 // Views into the map: the fan, the ray-by-ray reference and OctoMap, on the same views in one run. Prints a
 // table and writes build/bench/map.json (or the path in the last argument). --quick leaves out OctoMap.
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -14,6 +16,7 @@
 #include "map_bench_views.hpp"
 #include "mapping/flog/map_area.hpp"
 #include "mapping/flog/map_integrator.hpp"
+#include "mapping/tile_memory.hpp"
 
 namespace flogmap {
 namespace {
@@ -53,16 +56,41 @@ double time_views(const BenchViews& bench, MapIntegrator integrator, int repeats
   return median(best);
 }
 
-/// Time of one view on a map of `tiles` tiles elsewhere over the time on an empty one.
-double large_map_ratio(const BenchViews& bench, int tiles) {
-  MapIntegrator integrator = integrator_for(bench, 0.02, IntegratorKind::fan, 1);
-  const double small = time_views(bench, integrator, kRepeats, cpu_ms);
-  MapSnapshot large{integrator.info(), 1, {}};
-  auto tile = std::make_shared<Tile>(Tile{TileCells(3 * kTileColumns, Cell{100, 100, 100, 0}), 1});
-  for (int i = 0; i < tiles; ++i) large.tiles[{i % 142 - 71, i / 142 - 71}] = std::make_shared<Tile>(*tile);
-  integrator.restore(large);
-  large.tiles.clear();
-  return time_views(bench, std::move(integrator), kRepeats, cpu_ms) / small;
+/// A map of `tiles` tiles around, but not in, the room.
+MapSnapshot large_map(const MapInfo& info, int tiles) {
+  MapSnapshot large{info, 1, {}};
+  const Tile tile{TileCells(3 * kTileColumns, Cell{100, 100, 100, 0}), 1};
+  for (int i = 0; i < tiles; ++i) large.tiles[{i % 142 - 71, i / 142 - 71}] = std::make_shared<Tile>(tile);
+  return large;
+}
+
+double resident_mb() {
+  std::ifstream statm("/proc/self/statm");
+  double total = 0, resident = 0;
+  statm >> total >> resident;
+  return resident * 4096 / 1e6;
+}
+
+/// Adding views to a map of `tiles` tiles: how much longer than to an empty one, and what lies in memory;
+/// then again with a limit on the cells' memory.
+void measure_large_map(const BenchViews& bench, int tiles, nlohmann::ordered_json& json) {
+  constexpr std::size_t kLimitMb = 256;
+  const double small =
+      time_views(bench, integrator_for(bench, 0.02, IntegratorKind::fan, 1), kRepeats, cpu_ms);
+  for (const bool limited : {false, true}) {
+    ::malloc_trim(0);  // what the map before had
+    if (limited) TileMemory::keep_within(kLimitMb << 20U, std::filesystem::current_path());
+    MapIntegrator integrator = integrator_for(bench, 0.02, IntegratorKind::fan, 1);
+    integrator.restore(large_map(integrator.info(), tiles));
+    const double resident = resident_mb();
+    const double ratio = time_views(bench, std::move(integrator), kRepeats, cpu_ms) / small;
+    const std::string prefix = limited ? "large_map_limited_" : "large_map_";
+    json[prefix + "time_ratio"] = ratio;
+    json[prefix + "resident_mb"] = resident;
+    std::printf(
+        "a view on a map of %d tiles%s takes %.2f times as long as on an empty one; %.0f MB resident\n",
+        tiles, limited ? ", cells limited to 256 MB," : "", ratio, resident);
+  }
 }
 
 nlohmann::ordered_json measure(const BenchViews& bench, double cell_size_m, bool with_octomap) {
@@ -125,9 +153,7 @@ int run(const std::vector<std::string_view>& arguments) {
       print(bench.name + " " + std::to_string(mm) + " mm", row);
     }
   }
-  json["large_map_time_ratio"] = large_map_ratio(room_views(3), 20'000);
-  std::printf("a view on a map of 20,000 tiles takes %.2f times as long as on an empty one\n",
-              json["large_map_time_ratio"].get<double>());
+  measure_large_map(room_views(3), 20'000, json);
   if (out.has_parent_path()) std::filesystem::create_directories(out.parent_path());
   std::ofstream(out) << json.dump(1) << "\n";
   return 0;
