@@ -1,6 +1,6 @@
-// The odometry on every recording with true poses under FLOGMAP_DATA: errors of the path and time per frame.
-// Prints a table (--markdown: one for the docs) and writes build/bench/motion.json (or the path in the last
-// argument).
+// The odometry on every recording with true poses under FLOGMAP_DATA: errors of the path and time per frame,
+// and the path once loops are closed. Prints a table (--markdown: one for the docs) and writes
+// build/bench/motion.json (or the path in the last argument).
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -8,13 +8,18 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "camera/rectifier.hpp"
 #include "camera/source_spec.hpp"
+#include "mapping/flog/view_selector.hpp"
+#include "mapping/loop/corrected_path.hpp"
+#include "mapping/loop/loop_closer.hpp"
 #include "mapping/odometry/stereo_odometry.hpp"
 #include "mapping/odometry/trajectory_error.hpp"
 #include "mapping/stereo/disparity_matcher.hpp"
@@ -36,18 +41,45 @@ struct Recording {
   }
 };
 
-struct Result {
-  std::string name;
-  TrajectoryError error;
-  int num_frames = 0, num_lost = 0, num_key_frames = 0;
-  double median_cpu_ms = 0, p95_cpu_ms = 0;
-};
-
 double cpu_ms() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
 }
+
+struct Result {
+  std::string name;
+  TrajectoryError error, looped;  // without and with loops closed
+  int num_frames = 0, num_lost = 0, num_key_frames = 0, num_views = 0, num_loops = 0;
+  double median_cpu_ms = 0, p95_cpu_ms = 0, median_loop_ms = 0;
+};
+
+/// Finds loops in the views that a map takes, 8 cm or half a field of view apart.
+class LoopedPath {
+ public:
+  explicit LoopedPath(const StereoCamera& camera) : selector_({}, camera), closer_({}, camera) {}
+
+  void add(const RectifiedFrame& frame, const DisparityImage& disparity, const Tracking& tracking) {
+    if (std::exchange(segment_, tracking.segment) != tracking.segment) selector_.reset();
+    const SE3& pose = tracking.odometry_from_camera;
+    path_.add({{frame.timestamp_ns, pose, tracking.state, false, tracking.segment}});
+    if (tracking.state != TrackingState::ok || !selector_.accept(pose)) return;
+    const View view{frame.timestamp_ns, pose, disparity, frame.left, tracking.segment};
+    const double before = cpu_ms();
+    if (auto correction = closer_.add(view)) path_.correct(std::move(correction->path));
+    times_ms_.push_back(cpu_ms() - before);
+  }
+  [[nodiscard]] std::vector<TrajectoryEntry> path() const { return path_.corrected(); }
+  [[nodiscard]] int num_loops() const { return closer_.num_loops(); }
+  [[nodiscard]] const std::vector<double>& times_ms() const { return times_ms_; }
+
+ private:
+  ViewSelector selector_;
+  LoopCloser closer_;
+  CorrectedPath path_;
+  int segment_ = 0;
+  std::vector<double> times_ms_;
+};
 
 double quantile(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());
@@ -77,8 +109,10 @@ Result run(const Recording& recording, const std::filesystem::path& folder) {
   StereoOdometry odometry({}, camera);
   Result result;
   result.name = recording.title();
-  Trajectory estimate;
-  std::vector<std::size_t> placed;
+  Trajectory estimate, looped;
+  LoopedPath loops(camera);
+  std::map<std::int64_t, std::size_t> number_of;  // frame, by time
+  std::vector<std::size_t> placed, placed_looped;
   std::vector<double> times;
   int index = -1;
   while (const auto raw = source->next()) {
@@ -96,9 +130,19 @@ Result run(const Recording& recording, const std::filesystem::path& folder) {
     if (!tracking.has_pose()) continue;
     estimate.poses.push_back({frame.timestamp_ns, tracking.odometry_from_camera});
     placed.push_back(static_cast<std::size_t>(index));
+    number_of[frame.timestamp_ns] = placed.back();
+    loops.add(frame, disparity, tracking);
+  }
+  for (const TrajectoryEntry& entry : loops.path()) {
+    looped.poses.push_back({entry.timestamp_ns, entry.world_from_camera});
+    placed_looped.push_back(number_of.at(entry.timestamp_ns));
   }
   const Trajectory truth = read_trajectory(folder / recording.truth);
   result.error = evaluate_trajectory(estimate, truth.timed ? truth : only(truth, placed));
+  result.looped = evaluate_trajectory(looped, truth.timed ? truth : only(truth, placed_looped));
+  result.num_views = static_cast<int>(loops.times_ms().size());
+  result.num_loops = loops.num_loops();
+  result.median_loop_ms = quantile(loops.times_ms(), 0.5);
   result.median_cpu_ms = quantile(times, 0.5);
   result.p95_cpu_ms = quantile(times, 0.95);
   return result;
@@ -130,12 +174,37 @@ void print_head(bool markdown) {
   std::printf("|---|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
+/// What closing loops changes.
+void print_loops(const Result& r, bool markdown) {
+  const auto print = [&](const char* format) {
+    std::printf(format, r.name.c_str(), r.num_views, r.num_loops, r.error.ate_rmse_m, r.looped.ate_rmse_m,
+                r.error.end_error_m, r.looped.end_error_m, r.median_loop_ms);
+  };
+  print(markdown ? "| %s | %d | %d | %.4f → %.4f | %.3f → %.3f | %.1f |\n"
+                 : "%-28s %5d %5d   %.4f -> %.4f   %.3f -> %.3f %6.1f\n");
+}
+
+void print_loops_head(bool markdown) {
+  if (markdown) {
+    std::printf(
+        "\n| recording | views | loops | ATE [m] | end [m] | CPU per view [ms] "
+        "|\n|---|---|---|---|---|---|\n");
+  } else {
+    std::printf("\n%-28s %5s %5s   %-16s   %-14s %6s\n", "loops closed", "views", "loops", "ATE m", "end m",
+                "CPU ms");
+  }
+}
+
 void add_to(nlohmann::json& json, const Result& r) {
   json[r.name + "_ate_m"] = r.error.ate_rmse_m;
   json[r.name + "_rpe_m"] = r.error.rpe_rmse_m;
   json[r.name + "_rpe_deg"] = r.error.rpe_rmse_deg;
   json[r.name + "_drift_percent"] = r.error.drift_percent;
   json[r.name + "_end_m"] = r.error.end_error_m;
+  json[r.name + "_looped_ate_m"] = r.looped.ate_rmse_m;
+  json[r.name + "_looped_end_m"] = r.looped.end_error_m;
+  json[r.name + "_loops"] = r.num_loops;
+  json[r.name + "_loop_cpu_ms"] = r.median_loop_ms;
   json[r.name + "_lost_frames"] = r.num_lost;
   json[r.name + "_cpu_ms"] = r.median_cpu_ms;
 }
@@ -151,10 +220,12 @@ const std::vector<Recording> kRecordings{
     {"two-boxes-far", "euroc", "groundtruth.tum"},
     {"house-dev", "euroc", "groundtruth.tum"},
     {"house-dev", "euroc", "groundtruth.tum", 3},
+    {"house-dev", "euroc", "groundtruth.tum", 1, 100, 120},
 };
 
 int run_all(const std::filesystem::path& data, bool markdown, const std::filesystem::path& out) {
   nlohmann::json json;
+  std::vector<Result> results;
   print_head(markdown);
   for (const Recording& recording : kRecordings) {
     const auto folder = data / recording.name;
@@ -166,7 +237,10 @@ int run_all(const std::filesystem::path& data, bool markdown, const std::filesys
     print_row(result, markdown);
     std::fflush(stdout);
     add_to(json, result);
+    results.push_back(result);
   }
+  print_loops_head(markdown);
+  for (const Result& result : results) print_loops(result, markdown);
   if (out.has_parent_path()) std::filesystem::create_directories(out.parent_path());
   std::ofstream(out) << json.dump(2) << "\n";
   return 0;
