@@ -78,7 +78,9 @@ PicturePairList list_euroc(const fs::path& folder, bool needs_calibration) {
   PicturePairList list;
   if (needs_calibration) {
     list.calibration = read_euroc_pair(cam0 / "sensor.yaml", cam1 / "sensor.yaml");
-    list.up_in_left_camera = inertial_up(cam0.parent_path() / "imu0", list.calibration->body_from_left);
+    list.up_in_left_camera = read_up_in_camera(cam0 / "sensor.yaml");
+    if (!list.up_in_left_camera)
+      list.up_in_left_camera = inertial_up(cam0.parent_path() / "imu0", list.calibration->body_from_left);
   }
   pair_by_time(list_camera(cam0, list), list_camera(cam1, list), list);
   return list;

@@ -75,11 +75,19 @@ bool write_picture(const fs::path& file, const Picture& picture) {
   const int depth = picture.bits == 16 ? CV_16U : CV_8U;
   const cv::Mat view(picture.height, picture.width, CV_MAKETYPE(depth, picture.channels),
                      const_cast<std::uint8_t*>(picture.bytes.data()));  // only read
+  // Encoded first and written by ourselves: OpenCV's own writers do not notice a full disk.
+  Bytes bytes;
   try {
-    return cv::imwrite(file.string(), view, {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_JPEG_QUALITY, 92});
+    if (!cv::imencode(file.extension().string(), view, bytes,
+                      {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_JPEG_QUALITY, 92}))
+      return false;
   } catch (const cv::Exception&) {
     return false;
   }
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out.write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
+  out.close();
+  return out.good();
 }
 
 }  // namespace flogmap

@@ -117,18 +117,25 @@ RecordingWriter::RecordingWriter(fs::path folder, const StereoCalibration& calib
   const Eigen::Isometry3d body_from_right =
       calibration.body_from_left * calibration.right_from_left.inverse();
   const bool rectified = calibration.rectified;
-  write_text(cam0 / "sensor.yaml",
-             sensor_yaml(calibration.left, calibration.body_from_left, rectified, options_.rate_hz));
+  std::string left_yaml =
+      sensor_yaml(calibration.left, calibration.body_from_left, rectified, options_.rate_hz);
+  if (const auto& up = options_.up_in_left_camera)
+    left_yaml += "up_in_camera: " + list_text({up->x(), up->y(), up->z()}) + "\n";
+  write_text(cam0 / "sensor.yaml", left_yaml);
   write_text(cam1 / "sensor.yaml",
              sensor_yaml(calibration.right, body_from_right, rectified, options_.rate_hz));
   left_csv_ = open_list(cam0 / "data.csv", "#timestamp [ns],filename\n");
   right_csv_ = open_list(cam1 / "data.csv", "#timestamp [ns],filename\n");
+  if (!options_.about.empty()) write_text(folder_ / "recording.json", options_.about + "\n");
 }
 
 void RecordingWriter::write_picture_whole(const fs::path& file, const Picture& picture) const {
   const fs::path unfinished = file.parent_path() / ("unfinished" + file.extension().string());
-  if (!write_picture(unfinished, picture)) fail(file);
   std::error_code error;
+  if (!write_picture(unfinished, picture)) {
+    fs::remove(unfinished, error);  // makes room for the last lines of the lists
+    fail(file);
+  }
   fs::rename(unfinished, file, error);
   if (error) fail(file);
 }
@@ -137,14 +144,25 @@ void RecordingWriter::write(const StereoFrame& frame,
                             const std::optional<Eigen::Isometry3d>& world_from_left) {
   const std::string time = std::to_string(frame.timestamp_ns);
   const char* plain = frame.left.channels == 1 ? ".pgm" : ".ppm";
-  const std::string name = time + (options_.compress ? ".png" : plain);
+  const std::string name = time + (!options_.compress ? plain : options_.lossy ? ".jpg" : ".png");
   const fs::path cam0 = folder_ / "mav0" / "cam0", cam1 = folder_ / "mav0" / "cam1";
   write_picture_whole(cam0 / "data" / name, frame.left);
   write_picture_whole(cam1 / "data" / name, frame.right);
   add_line(right_csv_, time + "," + name, cam1 / "data.csv");
   add_line(left_csv_, time + "," + name, cam0 / "data.csv");
+  if (frame.details != CaptureDetails{}) write_details(frame);
   if (world_from_left) write_pose(frame.timestamp_ns, *world_from_left);
   ++num_written_;
+}
+
+void RecordingWriter::write_details(const StereoFrame& frame) {
+  const fs::path csv = folder_ / "mav0" / "capture.csv";
+  if (!capture_csv_.is_open())
+    capture_csv_ = open_list(csv, "#timestamp [ns],right - left [ns],exposure [us],gain\n");
+  std::ostringstream line;
+  line << frame.timestamp_ns << ',' << frame.details.skew_ns << ',' << frame.details.exposure_us << ','
+       << frame.details.gain;
+  add_line(capture_csv_, line.str(), csv);
 }
 
 void RecordingWriter::write_pose(std::int64_t timestamp_ns, const Eigen::Isometry3d& world_from_left) {

@@ -13,13 +13,16 @@
 namespace flogmap {
 
 /// Writes a recording in the EuRoC layout, calibration included: the inverse of reading "euroc:DIR". A pair
-/// is listed only when both its pictures are complete on disk, so that a recording broken off at any time is
-/// a shorter recording.
+/// is listed only when both its pictures are complete, so that a recording broken off at any time is a
+/// shorter recording. Pairs of live cameras also get a line in mav0/capture.csv: skew, exposure and gain.
 class RecordingWriter {
  public:
   struct Options {
-    bool compress = true;  // PNG; else PGM or PPM, which is several times faster and larger
+    bool compress = true;  // PNG or JPEG; else PGM or PPM, which is several times faster and larger
+    bool lossy = false;    // of the compressed ones: JPEG, small and not quite what was seen
     double rate_hz = 0;    // written down for readers; 0: unknown
+    std::optional<Eigen::Vector3d> up_in_left_camera{};  // as StereoSource says it; kept in cam0/sensor.yaml
+    std::string about{};  // written to recording.json: where the pairs come from; empty: no such file
   };
 
   /// Throws std::runtime_error if the folder holds a recording already or cannot be written.
@@ -35,12 +38,13 @@ class RecordingWriter {
 
  private:
   void write_picture_whole(const std::filesystem::path& file, const Picture& picture) const;
+  void write_details(const StereoFrame& frame);
   void write_pose(std::int64_t timestamp_ns, const Eigen::Isometry3d& world_from_left);
 
   std::filesystem::path folder_;
   Eigen::Isometry3d left_from_body_;
   Options options_;
-  std::ofstream left_csv_, right_csv_, truth_csv_, truth_tum_;
+  std::ofstream left_csv_, right_csv_, truth_csv_, truth_tum_, capture_csv_;
   std::int64_t num_written_ = 0;
 };
 

@@ -132,7 +132,7 @@ void add_start_options(OptionTable& table, Options& options) {
              "map with these poses (TUM or EuRoC csv) instead of the estimated motion");
   table.choice<PosesFrame>(
       "poses-frame", options.poses_frame,
-      {{"rectified", PosesFrame::rectified}, {"raw", PosesFrame::raw}, {"body", PosesFrame::body}},
+      {{"rectified", PosesFrame::rectified}, {"pictures", PosesFrame::raw}, {"body", PosesFrame::body}},
       "what --poses and --first-pose are poses of: the rectified or the raw left camera, or the body");
   table.add(
       {.name = "first-pose",
@@ -195,8 +195,9 @@ void add_mapping_options(OptionTable& table, Options& options) {
                           "fuzzy and, or and not of the map's rules");
   table.choice<bool>("loop-closure", options.loop_closure, {{"on", true}, {"off", false}},
                      "recognise places seen before and correct path and map");
-  table.integer("map-memory", "MB", options.map_memory_mb, 0, 1 << 20,
-                "cells of the map kept in memory, about; others lie in a file and come back when needed; 0 = all");
+  table.integer(
+      "map-memory", "MB", options.map_memory_mb, 0, 1 << 20,
+      "cells of the map kept in memory, about; others lie in a file and come back when needed; 0 = all");
   table.integer("threads", "N", options.num_threads, 0, kMaxThreads,
                 "per stage; 0 = every core. Same map for any N");
 }
@@ -241,7 +242,8 @@ std::vector<std::string> all_option_names() {
   add_mapping_options(table, options);
   add_serve_options(table, options);
   std::vector<std::string> names = table.names();
-  names.insert(names.end(), {"out", "duration"});
+  names.insert(names.end(), {"out", "duration", "pictures", "left", "right", "pattern", "board", "square-mm",
+                             "marker-mm", "tag-gap", "dictionary", "model"});
   return names;
 }
 

@@ -1,5 +1,6 @@
 #include "camera/calibration/euroc_calibration.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "camera/calibration/calibration_checks.hpp"
@@ -22,6 +23,18 @@ EurocCamera read_euroc_camera(const std::filesystem::path& sensor_yaml) {
   camera.body_from_sensor = yaml::transform(root, {file, "T_BS"});
   camera.rectified = root["rectified"] && yaml::text(root, {file, "rectified"}) == "true";
   return camera;
+}
+
+std::optional<Eigen::Vector3d> read_up_in_camera(const std::filesystem::path& sensor_yaml) {
+  const YAML::Node root = yaml::load(sensor_yaml);
+  if (!root["up_in_camera"]) return std::nullopt;
+  const std::vector<double> up = yaml::numbers(root, {sensor_yaml.string(), "up_in_camera"}, 3);
+  const Eigen::Vector3d direction(up[0], up[1], up[2]);
+  constexpr double kRounding = 1e-3;
+  if (std::abs(direction.norm() - 1) > kRounding)
+    throw std::runtime_error(sensor_yaml.string() + ": up_in_camera must have length 1, has " +
+                             std::to_string(direction.norm()));
+  return direction;
 }
 
 Eigen::Isometry3d read_euroc_extrinsics(const std::filesystem::path& sensor_yaml) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <optional>
 
 #include "camera/calibration/stereo_calibration.hpp"
 
@@ -16,6 +17,10 @@ struct EurocCamera {
 
 /// Throws std::runtime_error naming file, field, value and what is allowed.
 [[nodiscard]] EurocCamera read_euroc_camera(const std::filesystem::path& sensor_yaml);
+
+/// "up_in_camera" of a sensor.yaml, which our own recordings say: the direction against gravity at the first
+/// frame, unit length; nothing elsewhere. Throws if it is no direction.
+[[nodiscard]] std::optional<Eigen::Vector3d> read_up_in_camera(const std::filesystem::path& sensor_yaml);
 
 /// T_BS alone: what an inertial sensor's sensor.yaml is read for.
 [[nodiscard]] Eigen::Isometry3d read_euroc_extrinsics(const std::filesystem::path& sensor_yaml);

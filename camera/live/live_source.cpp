@@ -41,8 +41,8 @@ std::optional<StereoFrame> LiveSource::next() {
     auto pair = pairing_.offer(side, std::move(taken->picture));
     keep_in_step(exposed, skews_before);
     if (!pair) continue;
-    return StereoFrame{pair->left.timestamp_ns, std::move(pair->left.picture),
-                       std::move(pair->right.picture)};
+    return StereoFrame{pair->left.timestamp_ns, std::move(pair->left.picture), std::move(pair->right.picture),
+                       CaptureDetails{pair->skew_ns(), exposure_us_, gain_}};
   }
   return std::nullopt;
 }
