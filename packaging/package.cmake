@@ -1,0 +1,18 @@
+# The Debian package:  scripts/package  (or: configure with -DFLOGMAP_SERVICE=ON -DCMAKE_INSTALL_PREFIX=/usr, then cpack)
+option(FLOGMAP_SERVICE "Install the systemd service, with its configuration in /etc" OFF)
+install(FILES THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(FLOGMAP_SERVICE)
+  install(FILES packaging/flogmap.service DESTINATION lib/systemd/system)
+  install(FILES packaging/flogmap.json DESTINATION /etc/flogmap)
+endif()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_SET_DESTDIR ON)  # because of /etc
+set(CPACK_INSTALL_PREFIX ${CMAKE_INSTALL_PREFIX})
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_CONTACT "the flogmap authors <flogmap@localhost>")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/conffiles)
+include(CPack)
