@@ -132,7 +132,7 @@ void add_start_options(OptionTable& table, Options& options) {
              "map with these poses (TUM or EuRoC csv) instead of the estimated motion");
   table.choice<PosesFrame>(
       "poses-frame", options.poses_frame,
-      {{"rectified", PosesFrame::rectified}, {"pictures", PosesFrame::raw}, {"body", PosesFrame::body}},
+      {{"rectified", PosesFrame::rectified}, {"raw", PosesFrame::raw}, {"body", PosesFrame::body}},
       "what --poses and --first-pose are poses of: the rectified or the raw left camera, or the body");
   table.add(
       {.name = "first-pose",
