@@ -1,13 +1,20 @@
 #include "camera/live/libcamera_camera.hpp"
 
+#include <libcamera/libcamera.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
+
+#include "camera/live/luma.hpp"
 
 namespace flogmap {
 namespace {
@@ -39,8 +46,60 @@ std::optional<lc::PixelFormat> best_format(const lc::StreamFormats& formats) {
 
 }  // namespace
 
-LibcameraCamera::LibcameraCamera(std::shared_ptr<lc::Camera> camera, Side side, const RigOptions& options,
-                                 OnPicture on_picture, OnLost on_lost)
+class LibcameraCamera::Impl {
+ public:
+  Impl(std::shared_ptr<libcamera::Camera> camera, Side side, const RigOptions& options, OnPicture on_picture,
+       OnLost on_lost);
+  ~Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  Clock::time_point queue_free_requests();
+
+  void set_duration(std::int64_t duration_ns);
+  void set_exposure(double exposure_us, double gain);
+  [[nodiscard]] bool keeps_step() const { return sync_mode_.has_value(); }
+
+ private:
+  void configure(const RigOptions& options);
+  void make_requests();
+  bool make_memory_buffers();
+  void map_buffer(const libcamera::FrameBuffer& buffer);
+  [[nodiscard]] libcamera::ControlList first_controls(const RigOptions& options);
+  [[nodiscard]] bool has(const libcamera::ControlId& control) const;
+  void completed(libcamera::Request* request);
+  [[nodiscard]] std::optional<RigPicture> picture_of(libcamera::Request* request) const;
+  void was_disconnected();
+
+  std::shared_ptr<libcamera::Camera> camera_;
+  const Side side_;
+  const std::int64_t period_ns_;
+  OnPicture on_picture_;
+  OnLost on_lost_;
+  std::unique_ptr<libcamera::CameraConfiguration> configuration_;
+  libcamera::Stream* stream_ = nullptr;
+  LumaLayout layout_ = LumaLayout::planar8;
+  std::unique_ptr<libcamera::FrameBufferAllocator> allocator_;
+  std::vector<std::unique_ptr<libcamera::FrameBuffer>> own_buffers_;
+  std::vector<std::unique_ptr<libcamera::Request>> requests_;
+  struct Mapping {
+    void* address = nullptr;
+    std::size_t size = 0;
+  };
+  std::map<const libcamera::FrameBuffer*, Mapping> mappings_;
+  std::optional<unsigned> sync_mode_, sync_ready_;  // ids of Raspberry Pi's controls, where there are any
+
+  std::mutex mutex_;  // between libcamera's thread and ours
+  std::vector<libcamera::Request*> free_;
+  std::optional<std::int64_t> wanted_duration_ns_;
+  std::optional<std::pair<double, double>> wanted_exposure_;
+  double tokens_;  // requests that may be queued now
+  Clock::time_point tokens_at_;
+  bool running_ = false;
+};
+
+LibcameraCamera::Impl::Impl(std::shared_ptr<lc::Camera> camera, Side side, const RigOptions& options,
+                            OnPicture on_picture, OnLost on_lost)
     : camera_(std::move(camera)),
       side_(side),
       period_ns_(period_of(options.rate_hz)),
@@ -53,8 +112,8 @@ LibcameraCamera::LibcameraCamera(std::shared_ptr<lc::Camera> camera, Side side, 
   try {
     configure(options);
     make_requests();
-    camera_->requestCompleted.connect(this, &LibcameraCamera::completed);
-    camera_->disconnected.connect(this, &LibcameraCamera::was_disconnected);
+    camera_->requestCompleted.connect(this, &LibcameraCamera::Impl::completed);
+    camera_->disconnected.connect(this, &LibcameraCamera::Impl::was_disconnected);
     const lc::ControlList controls = first_controls(options);
     if (camera_->start(&controls) != 0)
       throw std::runtime_error("camera " + camera_->id() + " does not start");
@@ -68,7 +127,7 @@ LibcameraCamera::LibcameraCamera(std::shared_ptr<lc::Camera> camera, Side side, 
   }
 }
 
-LibcameraCamera::~LibcameraCamera() {
+LibcameraCamera::Impl::~Impl() {
   {
     const std::scoped_lock lock(mutex_);
     running_ = false;
@@ -83,11 +142,11 @@ LibcameraCamera::~LibcameraCamera() {
   camera_->release();
 }
 
-bool LibcameraCamera::has(const lc::ControlId& control) const {
+bool LibcameraCamera::Impl::has(const lc::ControlId& control) const {
   return camera_->controls().count(control.id()) > 0;
 }
 
-void LibcameraCamera::configure(const RigOptions& options) {
+void LibcameraCamera::Impl::configure(const RigOptions& options) {
   const std::string name = "camera " + camera_->id();
   configuration_ = camera_->generateConfiguration({lc::StreamRole::VideoRecording});
   if (!configuration_ || configuration_->empty()) throw std::runtime_error(name + " has no video stream");
@@ -114,7 +173,7 @@ void LibcameraCamera::configure(const RigOptions& options) {
 }
 
 /// Buffers of the kernel's, or, where it has no device for them, plain memory.
-void LibcameraCamera::make_requests() {
+void LibcameraCamera::Impl::make_requests() {
   allocator_ = std::make_unique<lc::FrameBufferAllocator>(camera_);
   std::vector<lc::FrameBuffer*> buffers;
   if (allocator_->allocate(stream_) > 0) {
@@ -134,7 +193,7 @@ void LibcameraCamera::make_requests() {
   }
 }
 
-bool LibcameraCamera::make_memory_buffers() {
+bool LibcameraCamera::Impl::make_memory_buffers() {
   const lc::StreamConfiguration& stream = configuration_->at(0);
   if (stream.frameSize == 0) return false;
   const unsigned luma = stream.stride * stream.size.height;
@@ -157,7 +216,7 @@ bool LibcameraCamera::make_memory_buffers() {
 }
 
 /// Kernel buffers are mapped from their beginning; a plane begins at its offset.
-void LibcameraCamera::map_buffer(const lc::FrameBuffer& buffer) {
+void LibcameraCamera::Impl::map_buffer(const lc::FrameBuffer& buffer) {
   const auto& plane = buffer.planes()[0];
   const std::size_t size = plane.offset + plane.length;
   void* address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, plane.fd.get(), 0);
@@ -166,7 +225,7 @@ void LibcameraCamera::map_buffer(const lc::FrameBuffer& buffer) {
   mappings_[&buffer] = {address, size};
 }
 
-lc::ControlList LibcameraCamera::first_controls(const RigOptions& options) {
+lc::ControlList LibcameraCamera::Impl::first_controls(const RigOptions& options) {
   lc::ControlList controls(camera_->controls());
   if (has(lc::controls::FrameDurationLimits)) {
     const std::array<std::int64_t, 2> limits_us{period_ns_ / 1000, period_ns_ / 1000};
@@ -185,7 +244,7 @@ lc::ControlList LibcameraCamera::first_controls(const RigOptions& options) {
   return controls;
 }
 
-LibcameraCamera::Clock::time_point LibcameraCamera::queue_free_requests() {
+LibcameraCamera::Clock::time_point LibcameraCamera::Impl::queue_free_requests() {
   const std::scoped_lock lock(mutex_);
   const auto now = Clock::now();
   // A little faster than the frame rate, so that a sensor never waits for a buffer.
@@ -214,17 +273,17 @@ LibcameraCamera::Clock::time_point LibcameraCamera::queue_free_requests() {
   return now + std::chrono::nanoseconds(std::llround(short_of / per_ns));
 }
 
-void LibcameraCamera::set_duration(std::int64_t duration_ns) {
+void LibcameraCamera::Impl::set_duration(std::int64_t duration_ns) {
   const std::scoped_lock lock(mutex_);
   wanted_duration_ns_ = duration_ns;
 }
 
-void LibcameraCamera::set_exposure(double exposure_us, double gain) {
+void LibcameraCamera::Impl::set_exposure(double exposure_us, double gain) {
   const std::scoped_lock lock(mutex_);
   wanted_exposure_ = {exposure_us, gain};
 }
 
-std::optional<RigPicture> LibcameraCamera::picture_of(lc::Request* request) const {
+std::optional<RigPicture> LibcameraCamera::Impl::picture_of(lc::Request* request) const {
   const auto& [stream, buffer] = *request->buffers().begin();
   const lc::ControlList& metadata = request->metadata();
   const auto taken = metadata.get(lc::controls::SensorTimestamp);
@@ -241,7 +300,7 @@ std::optional<RigPicture> LibcameraCamera::picture_of(lc::Request* request) cons
   return picture.picture.picture.empty() ? std::nullopt : std::optional(std::move(picture));
 }
 
-void LibcameraCamera::completed(lc::Request* request) {
+void LibcameraCamera::Impl::completed(lc::Request* request) {
   if (request->status() == lc::Request::RequestCancelled) return;
   std::optional<RigPicture> picture = picture_of(request);
   request->reuse(lc::Request::ReuseBuffers);
@@ -252,6 +311,20 @@ void LibcameraCamera::completed(lc::Request* request) {
   if (picture) on_picture_(std::move(*picture));
 }
 
-void LibcameraCamera::was_disconnected() { on_lost_("camera " + camera_->id() + " was unplugged"); }
+void LibcameraCamera::Impl::was_disconnected() { on_lost_("camera " + camera_->id() + " was unplugged"); }
+
+LibcameraCamera::LibcameraCamera(std::shared_ptr<lc::Camera> camera, Side side, const RigOptions& options,
+                                 OnPicture on_picture, OnLost on_lost)
+    : impl_(std::make_unique<Impl>(std::move(camera), side, options, std::move(on_picture),
+                                   std::move(on_lost))) {}
+LibcameraCamera::~LibcameraCamera() = default;
+LibcameraCamera::Clock::time_point LibcameraCamera::queue_free_requests() {
+  return impl_->queue_free_requests();
+}
+void LibcameraCamera::set_duration(std::int64_t duration_ns) { impl_->set_duration(duration_ns); }
+void LibcameraCamera::set_exposure(double exposure_us, double gain) {
+  impl_->set_exposure(exposure_us, gain);
+}
+bool LibcameraCamera::keeps_step() const { return impl_->keeps_step(); }
 
 }  // namespace flogmap

@@ -11,6 +11,7 @@
 
 #include "camera/live/camera_rig.hpp"
 #include "camera/live/libcamera_camera.hpp"
+#include "camera/live/luma.hpp"
 
 namespace flogmap {
 namespace {
