@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kMostRobotM = 5;
+constexpr double kFromCameraM = 1.5;  // what stands under a camera is seldom seen: begin nearby instead
 
 /// [x, y] or {"x": .., "y": ..}, metres.
 Eigen::Vector2d point_field(const nlohmann::json& body, const char* name) {
@@ -127,7 +128,8 @@ ApiResponse reachable_answer(const MapSnapshot& map, const RouteRequest& request
 
 ApiAnswer post_reachable(const ApiRequest& request, ServerState& state) {
   ServedMap& map = requested_map(request, state);
-  const RouteRequest start = requested_start(json_body(request), state.options, map.board().info());
+  RouteRequest start = requested_start(json_body(request), state.options, map.board().info());
+  start.snap_m = kFromCameraM;
   return ApiJob([snapshot = map.snapshot(), start, epoch = map.epoch()] {
     return reachable_answer(*snapshot, start, epoch);
   });

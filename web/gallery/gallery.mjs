@@ -44,6 +44,32 @@ async function film(browser, url) {
   writeFileSync(path.join(folder, 'growing.png'), animatedPng(frames, 180));
 }
 
+/** First person, at a part of the recorded path. */
+async function walk(page, part) {
+  await page.getByRole('button', { name: 'Walk through the mapped views' }).click();
+  await page.locator('.walk-bar').waitFor();
+  await page.evaluate((to) => {
+    const slider = document.querySelector('.walk-bar input[type=range]');
+    slider.value = String(Number(slider.max) * to);
+    slider.dispatchEvent(new Event('input'));
+  }, part);
+  await page.waitForFunction(() => window.__flog.walk.shown > 4 && window.__flog.walk.missing === 0);
+}
+
+/** Two clicks along the path, and where a robot gets to. */
+async function route(page) {
+  const { points } = await (await fetch(`${url}/api/v1/maps/live/trajectory`)).json();
+  await page.waitForTimeout(2000);
+  await page.locator('.map > canvas').focus();
+  await page.keyboard.press('r');
+  for (const at of [0.02, 0.5]) {
+    const [x, y] = points[Math.floor(at * points.length)].position;
+    const position = await page.evaluate(([wx, wy]) => window.__flog.project(wx, wy), [x, y]);
+    await page.locator('.map > canvas').click({ position });
+  }
+  await page.getByRole('switch', { name: 'Show where it can get to' }).click();
+}
+
 const DESKTOP = { width: 1280, height: 800 };
 const SHOTS = [
   ['live-dark', DESKTOP, 'dark', ''],
@@ -62,6 +88,10 @@ const SHOTS = [
   }],
   ['cell', DESKTOP, 'dark', '', async (page) => { await page.locator('.map > canvas').click({ position: { x: 330, y: 250 } }); await page.locator('summary', { hasText: 'Camera' }).click(); }],
   ['status', DESKTOP, 'dark', '', async (page) => { for (const title of ['Camera', 'Cell']) await page.locator('summary', { hasText: title }).click(); await page.waitForTimeout(8000); }],
+  ['route', DESKTOP, 'dark', '#s=motion&p=grey', route],
+  ['walkthrough', DESKTOP, 'dark', '', (page) => walk(page, 0.55)],
+  ['walkthrough-light', DESKTOP, 'light', '', (page) => walk(page, 0.2)],
+  ['phone-walkthrough', { width: 390, height: 844 }, 'dark', '', (page) => walk(page, 0.8)],
   ['phone', { width: 390, height: 844 }, 'dark', ''],
   ['phone-layers', { width: 390, height: 844 }, 'light', '', async (page) => { await page.locator('.tabs button').first().click(); }],
 ];

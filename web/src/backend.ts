@@ -21,13 +21,31 @@ export interface Route {
   readonly clearanceM: number;
 }
 
+/** What goes through the map; height 0: every layer counts. */
+export interface Robot {
+  readonly radiusM: number;
+  readonly heightM: number;
+}
+
+/** Cells that a robot can get to: runs of not reached, reached, not ..., row by row from the lowest y. */
+export interface Reach {
+  readonly x: number; // lower left corner, metres
+  readonly y: number;
+  readonly cellSize: number;
+  readonly width: number;
+  readonly height: number;
+  readonly runs: readonly number[];
+  readonly areaM2: number;
+}
+
 export interface Backend {
   pause(): Promise<void>;
   resume(): Promise<void>;
   reset(): Promise<void>;
   changePlayback(change: PlaybackChange): Promise<void>;
   step(): Promise<void>;
-  route(from: Spot, to: Spot, robotRadiusM: number): Promise<Route>;
+  route(from: Spot, to: Spot, robot: Robot): Promise<Route>;
+  reach(from: Spot, robot: Robot): Promise<Reach>;
   views(): Promise<ViewList>;
   viewMesh(number: number): Promise<ArrayBuffer>;
   /** Addresses to open or copy; undefined where there is no such server. */
@@ -63,7 +81,8 @@ export function restBackend(base: string, ask: Fetch = (input, init) => fetch(in
     reset: () => post('session:reset'),
     step: () => post('playback:step'),
     changePlayback: async (change) => void (await send('PATCH', 'playback', change)),
-    route: async (from, to, radius) => routeFrom(await send('POST', 'maps/live/route', { from: [from.x, from.y], to: [to.x, to.y], robot_radius_m: radius })),
+    route: async (from, to, robot) => routeFrom(await send('POST', 'maps/live/route', { from: [from.x, from.y], to: [to.x, to.y], ...sizeOf(robot) })),
+    reach: async (from, robot) => reachFrom(await send('POST', 'maps/live/reachable', { from: [from.x, from.y], ...sizeOf(robot) })),
     views: async () => viewsFrom(await send('GET', 'maps/live/views')),
     viewMesh: async (number) => {
       const response = await ask(`${base}maps/live/views/${number}.glb`);
@@ -97,4 +116,11 @@ function viewsFrom(answer: unknown): ViewList {
     epoch, camera: { focalPx: of('focal_px'), cxPx: of('cx_px'), cyPx: of('cy_px'), widthPx: of('width_px'), heightPx: of('height_px') },
     views: views.map(({ number, time_ns, position, orientation_xyzw: [qx, qy, qz, qw] }) => ({ number, timeNs: BigInt(time_ns), position, orientation: { qx, qy, qz, qw } })),
   };
+}
+
+const sizeOf = ({ radiusM, heightM }: Robot): Record<string, number> => ({ robot_radius_m: radiusM, robot_height_m: heightM });
+
+function reachFrom(answer: unknown): Reach {
+  const { origin, cell_size, width, height, runs, area_m2 } = answer as { origin: [number, number]; cell_size: number; width: number; height: number; runs: number[]; area_m2: number };
+  return { x: origin[0], y: origin[1], cellSize: cell_size, width, height, runs, areaM2: area_m2 };
 }

@@ -5,6 +5,7 @@ import type { MapInfo, TrajectoryPoint } from './gen/flogmap/v1/map_pb';
 import type { CameraModel, CellColumn, Features, ImageStream, Playback, Pose, Status } from './gen/flogmap/v1/stream_pb';
 import { Signal } from './signal';
 import { TileStore, type TileKey } from './tile_store';
+import type { Light } from './warnings';
 
 export interface Notice {
   readonly tone: 'info' | 'warning';
@@ -23,6 +24,8 @@ export class LiveMap {
   playback: Playback | null = null;
   features: Features | null = null;
   column: CellColumn | null = null;
+  /** How light the pictures are, looked at once a second. */
+  readonly lights = new Map<ImageStream, Light>();
   readonly images = new Map<ImageStream, ImageEvent & { readonly receivedAt: number }>();
 
   /** Another map begins: everything that was drawn is void. */

@@ -86,8 +86,9 @@ function applyTheme(): void {
 systemDark.addEventListener('change', applyTheme);
 settings.watch(['theme'], applyTheme);
 
-settings.watch(['imageFps', 'showFeatures'], ({ imageFps, showFeatures }) => {
-  const images = imageFps > 0 ? [ImageStream.LEFT, ImageStream.DISPARITY].map((stream) => ({ stream, maxFps: imageFps, maxWidth: 480 })) : [];
+settings.watch(['imageFps', 'imageWidth', 'showFeatures', 'showRight'], ({ imageFps, imageWidth, showFeatures, showRight }) => {
+  const streams = [ImageStream.LEFT, ImageStream.DISPARITY, ...(showRight ? [ImageStream.RIGHT] : [])];
+  const images = imageFps > 0 ? streams.map((stream) => ({ stream, maxFps: imageFps, maxWidth: imageWidth })) : [];
   connection.subscribe({ planes: Planes.EVIDENCE, images, poseHz: POSE_HZ, features: showFeatures });
 });
 

@@ -32,6 +32,9 @@ export interface Settings {
   readonly showFeatures: boolean;
   readonly imageFps: number;
   readonly robotRadius: number; // metres
+  readonly robotHeight: number; // metres; 0: every layer must be free
+  readonly showRight: boolean; // the right picture too
+  readonly imageWidth: number; // pixels, at most
   readonly leftPanel: boolean;
   readonly rightPanel: boolean;
   /** By layer id; a layer that is not named is visible and opaque. */
@@ -41,7 +44,7 @@ export interface Settings {
 export const DEFAULTS: Settings = {
   theme: 'auto', palette: 'cividis', style: 'visual', operators: 'algebraic', threshold: DEFAULT_THRESHOLD, classes: false,
   colourByHeight: false, markConflict: true, showGrid: true, showPath: true, pathBy: 'time', follow: 'free', solid: false, spread: 0,
-  clipHeight: 10, showFeatures: true, imageFps: 5, robotRadius: 0.25, leftPanel: true, rightPanel: true, layers: {},
+  clipHeight: 10, showFeatures: true, imageFps: 5, robotRadius: 0.25, robotHeight: 0, showRight: false, imageWidth: 480, leftPanel: true, rightPanel: true, layers: {},
 };
 
 const LAYER: LayerSetting = { visible: true, opacity: 1 };

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { seededRandom } from './seeded_random';
-import { fit, formatLength, levelFor, pan, roundLength, screenFromWorld, turnAt, visibleRect, worldFromScreen, wrapAngle, zoomAt, type Viewport } from './viewport';
+import { fit, formatLength, levelFor, pan, pixelsApart, roundLength, screenFromWorld, towards, turnAt, visibleRect, worldFromScreen, wrapAngle, zoomAt, type Viewport } from './viewport';
 
 const random = seededRandom(7);
 const between = (a: number, b: number): number => a + (b - a) * random();
@@ -87,6 +87,18 @@ describe('viewport', () => {
       expect(Math.abs(wrapAngle(angle))).toBeLessThanOrEqual(Math.PI + 1e-9);
       expect(Math.cos(wrapAngle(angle))).toBeCloseTo(Math.cos(angle), 9);
       expect(Math.sin(wrapAngle(angle))).toBeCloseTo(Math.sin(angle), 9);
+    }
+  });
+});
+
+describe('towards', () => {
+  it('starts at one view, ends at the other, and comes nearer on the way, the short way round', () => {
+    for (let i = 0; i < 100; ++i) {
+      const from = anyView();
+      const to = { ...anyView(), width: from.width, height: from.height };
+      expect(pixelsApart(towards(from, to, 0), from)).toBeLessThan(1e-6);
+      expect(pixelsApart(towards(from, to, 1), to)).toBeLessThan(1e-6);
+      expect(Math.abs(wrapAngle(towards(from, to, 0.5).turn - from.turn))).toBeLessThanOrEqual(Math.PI / 2 + 1e-9);
     }
   });
 });

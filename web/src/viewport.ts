@@ -116,3 +116,15 @@ export function wrapAngle(angle: number): number {
   if (turned > Math.PI) return turned - 2 * Math.PI;
   return turned <= -Math.PI ? turned + 2 * Math.PI : turned;
 }
+
+/** Part `t` of the way to another view; of the same size. */
+export function towards(from: Viewport, to: Viewport, t: number): Viewport {
+  return {
+    ...from, x: from.x + (to.x - from.x) * t, y: from.y + (to.y - from.y) * t,
+    scale: from.scale * (to.scale / from.scale) ** t, turn: wrapAngle(from.turn + wrapAngle(to.turn - from.turn) * t),
+  };
+}
+
+/** How much two views differ, about in CSS pixels. */
+export const pixelsApart = (a: Viewport, b: Viewport): number =>
+  Math.max(Math.hypot(b.x - a.x, b.y - a.y) * a.scale, Math.abs(b.scale / a.scale - 1) * 300, Math.abs(wrapAngle(b.turn - a.turn)) * 300);

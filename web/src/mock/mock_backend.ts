@@ -12,6 +12,7 @@ export function mockBackend(server: MockServer): Backend {
     changePlayback: no('Replay'),
     step: no('Replay'),
     route: no('A route'),
+    reach: no('Where a robot can get to'),
     views: no('A walkthrough'),
     viewMesh: no('A walkthrough'),
     exportUrl: () => undefined,

@@ -24,6 +24,8 @@ function charts(): readonly Chart[] {
     { title: 'Frames', unit: '/s', curves: ['frames'], sample: ({ live }) => [live.status?.framesPerS ?? null] },
     { title: 'Stages', unit: 'ms', curves: STAGES, sample: ({ live }) => STAGES.map((name) => live.status?.stages.find(({ stage }) => stage === name)?.medianMs ?? null) },
     { title: 'Inliers', unit: '', curves: ['inliers'], sample: ({ live }) => [live.pose ? live.pose.inliers : null] },
+    { title: 'Tiles', unit: '', curves: ['on server', 'in page'], sample: ({ live }) => [live.status ? Number(live.status.tiles) : null, live.tiles.count] },
+    { title: 'Memory of the page', unit: 'MiB', curves: ['tiles', 'meshes'], sample: ({ live, walk }) => [live.tiles.bytes / 2 ** 20, walk.state.bytes / 2 ** 20] },
     { title: 'Round trip', unit: 'ms', curves: ['lag'], sample: ({ connection: { state } }) => [state.phase === 'live' || state.phase === 'lagging' ? state.lagMs : null] },
     {
       title: 'Received', unit: 'KiB/s', curves: ['data'],

@@ -1,10 +1,9 @@
 // What lies over the map as crisp lines: the chosen cell, pins, the measuring line, the route.
 
 import { areaOf, lengthOf } from '../geometry';
-import { attempt, type Page } from '../page';
-import type { Route } from '../backend';
+import type { Page } from '../page';
 import { append, h, setText, svg } from '../ui/dom';
-import { slider } from '../ui/controls';
+import { RobotTool } from './robot_tool';
 import type { Point } from '../viewport';
 
 export interface Overlay {
@@ -17,54 +16,43 @@ export interface Overlay {
 
 interface Work {
   measured: Point[];
-  from: Point | undefined;
-  route: Route | undefined;
 }
 
 export function overlay(page: Page): Overlay {
   const drawing = svg('svg', { class: 'overlay-lines', 'aria-hidden': 'true' });
   const words = h('span', { role: 'status' });
-  const radius = slider('Robot radius', { min: 0.05, max: 1, step: 0.05 }, (value) => `${value.toFixed(2)} m`, (robotRadius) => page.settings.set({ robotRadius }));
-  page.settings.watch(['robotRadius'], (now) => radius.show(now.robotRadius));
-  const card = h('div', { class: 'tool-card', hidden: true }, words, radius.element);
-  const work: Work = { measured: [], from: undefined, route: undefined };
+  const work: Work = { measured: [] };
+  const robot = new RobotTool(page, () => redraw());
+  const card = h('div', { class: 'tool-card', hidden: true }, words, robot.element);
   const redraw = (): void => {
     drawing.replaceChildren();
     drawCells(page, drawing);
     drawMeasure(page, drawing, work);
-    drawRoute(page, drawing, work);
+    drawRoute(page, drawing, robot);
     const { tool } = page.focus.get();
     card.hidden = tool === 'inspect';
-    radius.element.hidden = tool !== 'route';
-    setText(words, tool === 'measure' ? measureWords(work.measured, page.focus.get().hover, page.live.info?.cellSize ?? 0) : routeWords(work));
+    robot.element.hidden = tool !== 'route';
+    setText(words, tool === 'measure' ? measureWords(work.measured, page.focus.get().hover, page.live.info?.cellSize ?? 0) : '');
   };
   page.view.drawn.on(redraw);
   page.focus.changed.on(({ now, before }) => {
-    if (now.tool !== before.tool) Object.assign(work, { measured: [], from: undefined, route: undefined });
-    redraw();
+    if (now.tool !== before.tool) {
+      work.measured = [];
+      robot.clear();
+    } else redraw();
   });
-  return { element: h('div', { class: 'overlay' }, drawing, card), click: (world) => clicked(page, work, world, redraw), back: () => takeBack(work, redraw) };
-}
-
-function clicked(page: Page, work: Work, world: Point, redraw: () => void): void {
-  if (page.focus.get().tool === 'measure') work.measured.push(world);
-  else if (!work.from || work.route) Object.assign(work, { from: world, route: undefined });
-  else {
-    const asked = page.backend.route(work.from, world, page.settings.get().robotRadius);
-    void attempt(page, asked.then((route) => {
-      work.route = route;
-      redraw();
-    }));
-  }
-  redraw();
-}
-
-function takeBack(work: Work, redraw: () => void): boolean {
-  const had = work.measured.length > 0 || work.from !== undefined;
-  work.measured.pop();
-  Object.assign(work, { from: undefined, route: undefined });
-  redraw();
-  return had;
+  const back = (): boolean => {
+    if (page.focus.get().tool === 'route') return robot.back();
+    const had = work.measured.pop() !== undefined;
+    redraw();
+    return had;
+  };
+  const click = (world: Point): void => {
+    if (page.focus.get().tool === 'route') return robot.click(world);
+    work.measured.push(world);
+    redraw();
+  };
+  return { element: h('div', { class: 'overlay' }, drawing, card), click, back };
 }
 
 const at = (page: Page, p: Point): string => {
@@ -101,10 +89,10 @@ function drawMeasure(page: Page, drawing: SVGElement, { measured }: Work): void 
   for (const point of measured) dot(page, drawing, point, 'measure-dot');
 }
 
-function drawRoute(page: Page, drawing: SVGElement, { from, route }: Work): void {
+function drawRoute(page: Page, drawing: SVGElement, { from, to, route }: RobotTool): void {
   if (page.focus.get().tool !== 'route') return;
   if (route && route.points.length > 1) line(page, drawing, route.points, 'route-line');
-  for (const point of [from, route?.points.at(-1)]) if (point) dot(page, drawing, point, 'route-dot');
+  for (const point of [from, route?.points.at(-1) ?? to]) if (point) dot(page, drawing, point, 'route-dot');
 }
 
 function line(page: Page, drawing: SVGElement, points: readonly Point[], kind: string): void {
@@ -125,9 +113,4 @@ export function measureWords(measured: readonly Point[], hover: Point | undefine
   const length = `${lengthOf(points).toFixed(2)} m ± ${error.toFixed(2)}`;
   const leg = points.length > 2 ? `, last leg ${lengthOf(points.slice(-2)).toFixed(2)} m` : '';
   return `${length}${leg}${points.length > 2 ? `, area ${areaOf(points).toFixed(2)} m²` : ''}`;
-}
-
-function routeWords({ from, route }: Work): string {
-  if (route) return `Route: ${route.lengthM.toFixed(2)} m, least clearance ${route.clearanceM.toFixed(2)} m. Click to begin another.`;
-  return from ? 'Route: click where to go.' : 'Route: click where to start.';
 }

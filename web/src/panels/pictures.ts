@@ -5,25 +5,33 @@ import { ImageStream } from '../gen/flogmap/v1/stream_pb';
 import { cssColour, rampColour } from '../palette';
 import type { Page } from '../page';
 import { h, setText } from '../ui/dom';
-import { section, slider, toggle } from '../ui/controls';
+import { lightOf } from '../warnings';
+import { section, segmented, slider, toggle } from '../ui/controls';
 
 const INLIER = '#3ddc97';
 const OUTLIER = '#ff5d6c';
 const STALE_AFTER_MS = 3000;
+const LIGHT_EVERY_MS = 1000;
 
 export function picturesPanel(page: Page): HTMLElement {
   const left = picture(page, ImageStream.LEFT, 'Left', 'No picture yet. It comes with the first frame.');
+  const right = picture(page, ImageStream.RIGHT, 'Right', 'No picture yet.');
   const disparity = picture(page, ImageStream.DISPARITY, 'Disparity', 'No disparity yet.');
   const scale = disparityScale(page);
   const features = toggle('Tracked corners', (showFeatures) => page.settings.set({ showFeatures }), 'Corners that agree on the motion, and those that do not');
   const rate = slider('Pictures a second', { min: 0, max: 15, step: 1 }, (value) => (value === 0 ? 'off' : `${value}`), (imageFps) => page.settings.set({ imageFps }));
-  page.settings.watch(['showFeatures', 'imageFps'], (now) => {
+  const both = toggle('Right picture', (showRight) => page.settings.set({ showRight }));
+  const size = segmented<string>('Width of the pictures', [['240', 'Small'], ['480', 'Middle'], ['960', 'Large']], (value) => page.settings.set({ imageWidth: Number(value) }));
+  page.settings.watch(['showFeatures', 'imageFps', 'showRight', 'imageWidth'], (now) => {
+    both.show(now.showRight);
+    right.element.hidden = !now.showRight;
+    size.show(String(now.imageWidth));
     features.show(now.showFeatures);
     rate.show(now.imageFps);
     left.redraw();
   });
   page.live.featuresChanged.on(() => left.redraw());
-  return section('Camera', 'camera', left.element, disparity.element, scale, features.element, rate.element);
+  return section('Camera', 'camera', left.element, right.element, disparity.element, scale, features.element, both.element, rate.element, size.element);
 }
 
 interface Picture {
@@ -49,11 +57,24 @@ function picture(page: Page, stream: ImageStream, title: string, emptyText: stri
       bitmap = next;
       empty.hidden = true;
       redraw();
+      if (stream !== ImageStream.DISPARITY) measureLight(page, stream, next);
     }, () => setText(age, 'unreadable picture'));
   });
   if (stream === ImageStream.DISPARITY) depthUnderCursor(page, canvas, readout);
   setInterval(() => showAge(page, stream, age), 500);
   return { element, redraw };
+}
+
+const lightCanvas = h('canvas', { width: 32, height: 24 });
+const lookedAt = new Map<ImageStream, number>();
+
+function measureLight(page: Page, stream: ImageStream, bitmap: ImageBitmap): void {
+  const now = performance.now();
+  if (now - (lookedAt.get(stream) ?? -LIGHT_EVERY_MS) < LIGHT_EVERY_MS) return;
+  lookedAt.set(stream, now);
+  const context = lightCanvas.getContext('2d', { willReadFrequently: true });
+  context?.drawImage(bitmap, 0, 0, 32, 24);
+  if (context) page.live.lights.set(stream, lightOf(context.getImageData(0, 0, 32, 24).data));
 }
 
 function showAge(page: Page, stream: ImageStream, age: HTMLElement): void {

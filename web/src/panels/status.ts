@@ -1,12 +1,13 @@
 // How the session is doing: state, rates, sizes, stage times, and warnings in words.
 
 import { TrackingState } from '../gen/flogmap/v1/map_pb';
-import type { Status } from '../gen/flogmap/v1/stream_pb';
+import { ImageStream, type Status } from '../gen/flogmap/v1/stream_pb';
 import { lengthOf } from '../geometry';
 import type { Page } from '../page';
 import { h, setText } from '../ui/dom';
 import { icon } from '../ui/icons';
 import { section } from '../ui/controls';
+import { lightWarnings, speedWarnings } from '../warnings';
 
 export const TRACKING_WORDS: Record<TrackingState, string> = {
   [TrackingState.INITIALISING]: 'starting', [TrackingState.OK]: 'good', [TrackingState.WEAK]: 'weak', [TrackingState.LOST]: 'lost',
@@ -45,11 +46,13 @@ export function statusPanel(page: Page, charts: Node): HTMLElement {
 
 /** The server's warnings, and why tracking is not good. */
 export function warningsOf(page: Page): string[] {
-  const { status, pose } = page.live;
+  const { status, pose, lights, trajectory } = page.live;
   const tracking = pose && (pose.state === TrackingState.LOST || pose.state === TrackingState.WEAK)
     ? [`Tracking ${TRACKING_WORDS[pose.state]}${pose.reason ? `: ${pose.reason}` : ''}.${pose.state === TrackingState.LOST ? ' Point the camera back at something it has seen.' : ''}`]
     : [];
-  return [...tracking, ...(status?.warnings ?? [])];
+  const running = status?.sessionState === 'running';
+  const own = running ? [...lightWarnings(lights.get(ImageStream.LEFT), lights.get(ImageStream.RIGHT)), ...speedWarnings(trajectory)] : [];
+  return [...tracking, ...own, ...(status?.warnings ?? [])];
 }
 
 function factsOf(page: Page, bytesPerSecond: number): readonly (readonly [string, string])[] {

@@ -23,7 +23,7 @@ export function mapUniforms(): MapUniforms {
     uClasses: { value: false }, uByHeight: { value: false }, uMarkConflict: { value: true }, uRamp: { value: ramp },
     uWeights: { value: floats() }, uSeenFrom: { value: floats() }, uLayerColours: { value: Array.from({ length: MAX_LAYERS }, () => new Color()) },
     uUnknown: { value: new Color() }, uFree: { value: new Color() }, uOccupied: { value: new Color() }, uConflict: { value: new Color() },
-    uHatch: { value: new Color() }, uPixelRatio: { value: 1 },
+    uHatch: { value: new Color() }, uPixelRatio: { value: 1 }, uQuiet: { value: 0 },
   };
 }
 
@@ -94,7 +94,7 @@ uniform float uWeights[${MAX_LAYERS}];
 uniform float uSeenFrom[${MAX_LAYERS}];
 uniform vec3 uLayerColours[${MAX_LAYERS}];
 uniform vec3 uFree; uniform vec3 uOccupied; uniform vec3 uConflict;
-uniform float uThreshold; uniform float uConflictMark;
+uniform float uThreshold; uniform float uConflictMark; uniform float uQuiet;
 uniform bool uClasses; uniform bool uByHeight; uniform bool uMarkConflict;
 in vec2 vCell;
 flat in float vSlot;
@@ -133,6 +133,8 @@ void main() {
   if (!covers) shown = unknownColour();
   else if (!seen && mod(gl_FragCoord.x + gl_FragCoord.y, 8.0 * uPixelRatio) < uPixelRatio) shown = mix(shown, uUnknown, 0.55);
   if (uMarkConflict && conflict >= uConflictMark) shown = conflictHatch(shown);
+  float grey = dot(shown, vec3(0.3, 0.59, 0.11));
+  shown = mix(shown, vec3(0.75 * grey), 0.7 * uQuiet);
   colour = vec4(shown, uOnly >= 0 ? 0.55 : 1.0);
 }
 `;

@@ -3,16 +3,19 @@
 import { Color, Mesh, Scene, WebGLRenderer } from 'three';
 import { heading } from '../geometry';
 import { ImageStream } from '../gen/flogmap/v1/stream_pb';
+import type { Reach } from '../backend';
 import type { LiveMap } from '../live_map';
 import { classColours, cssColour, type Theme } from '../palette';
 import type { Settings } from '../settings';
 import { Signal, type Store } from '../signal';
 import type { Tile, TileKey } from '../tile_store';
-import { fit, pan, wrapAngle, zoomAt, type Point, type Rect, type Viewport } from '../viewport';
+import { fit, pan, pixelsApart, towards, wrapAngle, zoomAt, type Point, type Rect, type Viewport } from '../viewport';
 import { CameraMarker } from './camera_marker';
+import { FramePacer } from './frame_pacer';
 import { GridLines } from './grid_lines';
 import { applySettings, groundMaterial, mapUniforms, type MapUniforms } from './map_material';
 import { PathLine } from './path_line';
+import { ReachLayer } from './reach_layer';
 import { unitQuad } from './tile_meshes';
 import { TileScene } from './tile_scene';
 import { ViewCamera } from './view_camera';
@@ -20,9 +23,6 @@ import type { Walkthrough } from './walkthrough';
 
 const FIT_MARGIN_PX = 48;
 const EASE_PER_S = 9; // how fast the view follows
-// A machine that takes longer than this for a frame gets as long a rest after it: the page must stay alive.
-const SLOW_MS = 100;
-const MAX_REST_MS = 500;
 const WALK_SCALE = 40; // CSS pixels per metre that the floor of a walkthrough is chosen for
 
 export class MapView {
@@ -41,11 +41,11 @@ export class MapView {
   private readonly path = new PathLine();
   private readonly marker = new CameraMarker();
   private readonly grid = new GridLines();
+  private readonly reach = new ReachLayer();
   private readonly tiles: TileScene;
   private readonly ground = new Mesh(unitQuad(), groundMaterial(this.uniforms));
   private walkthrough: Walkthrough | null = null;
-  private scheduled = false;
-  private waited = 0; // ms that the last frame had to wait for its turn
+  private readonly pacer = new FramePacer((now) => this.draw(now));
   private held = false;
   private stale = { tiles: true, path: true, settings: true };
   private target: Viewport | null = null;
@@ -61,7 +61,7 @@ export class MapView {
     this.tiles = new TileScene(this.renderer, live, this.uniforms);
     this.ground.frustumCulled = false;
     this.ground.renderOrder = -10;
-    this.scene.add(this.ground, this.tiles.group, this.grid.mesh, this.path.group, this.marker.group);
+    this.scene.add(this.ground, this.tiles.group, this.reach.mesh, this.grid.mesh, this.path.group, this.marker.group);
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
     this.listen();
@@ -79,15 +79,7 @@ export class MapView {
   }
 
   requestDraw(): void {
-    if (this.scheduled) return;
-    this.scheduled = true;
-    setTimeout(() => {
-      const asked = performance.now();
-      requestAnimationFrame((now) => {
-        this.waited = performance.now() - asked;
-        this.draw(now);
-      });
-    }, this.waited > SLOW_MS ? Math.min(MAX_REST_MS, this.waited) : 0);
+    this.pacer.request();
   }
 
   /** Looks through a walker's eye instead of down on the map; null: back to the map. */
@@ -97,6 +89,11 @@ export class MapView {
     this.walkthrough = walkthrough;
     this.ground.visible = this.path.group.visible = this.marker.group.visible = !walkthrough;
     this.stale = { tiles: true, path: true, settings: true };
+    this.requestDraw();
+  }
+
+  showReach(reach: Reach | undefined): void {
+    this.reach.show(reach);
     this.requestDraw();
   }
 
@@ -237,7 +234,6 @@ export class MapView {
   }
 
   private draw(now: number): void {
-    this.scheduled = false;
     const seconds = Math.min(0.1, (now - this.lastFrame) / 1000);
     if (seconds > 0) this.fps = this.fps * 0.9 + 0.1 / Math.max(seconds, 1e-3);
     this.lastFrame = now;
@@ -257,6 +253,7 @@ export class MapView {
     const [x, y] = walk.walker.position;
     const settings = this.settings.get();
     if (this.stale.settings) this.refreshColours(settings);
+    this.setQuiet(true);
     this.grid.mesh.visible = false;
     if (this.live.info) this.tiles.show({ ...this.viewport, x, y, turn: 0, scale: WALK_SCALE }, this.live.info, { ...settings, solid: false }, walk.floor);
     this.stale.settings = false;
@@ -269,12 +266,8 @@ export class MapView {
     if (!this.target) return;
     const t = matchMedia('(prefers-reduced-motion: reduce)').matches ? 1 : 1 - Math.exp(-EASE_PER_S * seconds);
     const { viewport: from, target: to } = this;
-    const next = {
-      ...from, x: from.x + (to.x - from.x) * t, y: from.y + (to.y - from.y) * t,
-      scale: from.scale * (to.scale / from.scale) ** t, turn: wrapAngle(from.turn + wrapAngle(to.turn - from.turn) * t),
-    };
-    const left = Math.max(Math.hypot(to.x - next.x, to.y - next.y) * next.scale, Math.abs(to.scale / next.scale - 1) * 300, Math.abs(wrapAngle(to.turn - next.turn)) * 300);
-    if (left < 0.4) this.target = null;
+    const next = towards(from, to, t);
+    if (pixelsApart(next, to) < 0.4) this.target = null;
     this.setViewport(this.target ? next : { ...to, width: from.width, height: from.height });
   }
 
@@ -282,6 +275,7 @@ export class MapView {
     const settings = this.settings.get();
     const { info } = this.live;
     if (this.stale.settings) this.refreshColours(settings);
+    this.setQuiet(false);
     if (this.stale.tiles && info) this.tiles.show(this.viewport, info, settings);
     if (this.stale.path && !this.held) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
     this.path.setScale(this.viewport.scale);
@@ -291,6 +285,12 @@ export class MapView {
       this.marker.setState(pose.state);
       this.marker.place(pose.pose, this.live.camera, this.viewport.scale, settings.solid);
     }
+  }
+
+  /** The floor of a walkthrough keeps in the background. */
+  private setQuiet(quiet: boolean): void {
+    const uniform = this.uniforms['uQuiet'];
+    if (uniform) uniform.value = quiet ? 1 : 0;
   }
 
   private refreshColours(settings: Settings): void {
