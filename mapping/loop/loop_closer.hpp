@@ -60,6 +60,9 @@ class LoopCloser {
   /// Closed so far, those that moved hardly anything included.
   [[nodiscard]] int num_loops() const { return num_loops_; }
 
+  /// Steps of odometry and, where `may_be_wrong`, loops, between views as they are remembered.
+  [[nodiscard]] const std::vector<PoseEdge>& edges() const { return edges_; }
+
  private:
   struct Remembered {
     std::int64_t timestamp_ns = 0;
