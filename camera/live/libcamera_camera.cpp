@@ -1,13 +1,10 @@
 #include "camera/live/libcamera_camera.hpp"
 
 #include <libcamera/libcamera.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -15,6 +12,7 @@
 #include <vector>
 
 #include "camera/live/luma.hpp"
+#include "camera/live/picture_buffers.hpp"
 
 namespace flogmap {
 namespace {
@@ -63,8 +61,6 @@ class LibcameraCamera::Impl {
  private:
   void configure(const RigOptions& options);
   void make_requests();
-  bool make_memory_buffers();
-  void map_buffer(const libcamera::FrameBuffer& buffer);
   [[nodiscard]] libcamera::ControlList first_controls(const RigOptions& options);
   [[nodiscard]] bool has(const libcamera::ControlId& control) const;
   void completed(libcamera::Request* request);
@@ -77,16 +73,9 @@ class LibcameraCamera::Impl {
   OnPicture on_picture_;
   OnLost on_lost_;
   std::unique_ptr<libcamera::CameraConfiguration> configuration_;
-  libcamera::Stream* stream_ = nullptr;
   LumaLayout layout_ = LumaLayout::planar8;
-  std::unique_ptr<libcamera::FrameBufferAllocator> allocator_;
-  std::vector<std::unique_ptr<libcamera::FrameBuffer>> own_buffers_;
+  std::unique_ptr<PictureBuffers> buffers_;
   std::vector<std::unique_ptr<libcamera::Request>> requests_;
-  struct Mapping {
-    void* address = nullptr;
-    std::size_t size = 0;
-  };
-  std::map<const libcamera::FrameBuffer*, Mapping> mappings_;
   std::optional<unsigned> sync_mode_, sync_ready_;  // ids of Raspberry Pi's controls, where there are any
 
   std::mutex mutex_;  // between libcamera's thread and ours
@@ -121,7 +110,8 @@ LibcameraCamera::Impl::Impl(std::shared_ptr<lc::Camera> camera, Side side, const
   } catch (...) {
     camera_->requestCompleted.disconnect(this);
     camera_->disconnected.disconnect(this);
-    allocator_.reset();
+    requests_.clear();
+    buffers_.reset();
     camera_->release();
     throw;
   }
@@ -136,9 +126,7 @@ LibcameraCamera::Impl::~Impl() {
   camera_->requestCompleted.disconnect(this);
   camera_->disconnected.disconnect(this);
   requests_.clear();
-  for (const auto& [buffer, mapping] : mappings_) ::munmap(mapping.address, mapping.size);
-  own_buffers_.clear();
-  allocator_.reset();
+  buffers_.reset();
   camera_->release();
 }
 
@@ -168,61 +156,19 @@ void LibcameraCamera::Impl::configure(const RigOptions& options) {
   }
   if (camera_->configure(configuration_.get()) != 0)
     throw std::runtime_error(name + " refuses its configuration");
-  stream_ = stream.stream();
   sync_mode_ = control_named(camera_->controls(), "SyncMode");
 }
 
-/// Buffers of the kernel's, or, where it has no device for them, plain memory.
 void LibcameraCamera::Impl::make_requests() {
-  allocator_ = std::make_unique<lc::FrameBufferAllocator>(camera_);
-  std::vector<lc::FrameBuffer*> buffers;
-  if (allocator_->allocate(stream_) > 0) {
-    for (const auto& buffer : allocator_->buffers(stream_)) buffers.push_back(buffer.get());
-  } else if (make_memory_buffers()) {
-    for (const auto& buffer : own_buffers_) buffers.push_back(buffer.get());
-  } else {
-    throw std::runtime_error("camera " + camera_->id() + ": no memory for pictures");
-  }
-  for (lc::FrameBuffer* buffer : buffers) {
-    map_buffer(*buffer);
+  const lc::StreamConfiguration& stream = configuration_->at(0);
+  buffers_ = std::make_unique<PictureBuffers>(camera_, stream);
+  for (lc::FrameBuffer* buffer : buffers_->all()) {
     std::unique_ptr<lc::Request> request = camera_->createRequest();
-    if (!request || request->addBuffer(stream_, buffer) != 0)
+    if (!request || request->addBuffer(stream.stream(), buffer) != 0)
       throw std::runtime_error("camera " + camera_->id() + ": no request could be made");
     free_.push_back(request.get());
     requests_.push_back(std::move(request));
   }
-}
-
-bool LibcameraCamera::Impl::make_memory_buffers() {
-  const lc::StreamConfiguration& stream = configuration_->at(0);
-  if (stream.frameSize == 0) return false;
-  const unsigned luma = stream.stride * stream.size.height;
-  for (unsigned i = 0; i < kBuffers; ++i) {
-    const int file = ::memfd_create("flogmap-picture", MFD_CLOEXEC);
-    if (file < 0 || ::ftruncate(file, static_cast<off_t>(stream.frameSize)) != 0) return false;
-    const lc::SharedFD shared(lc::UniqueFD{file});
-    std::vector<lc::FrameBuffer::Plane> planes(1);
-    planes[0].fd = shared;
-    planes[0].offset = 0;
-    planes[0].length = std::min(luma, stream.frameSize);
-    if (stream.frameSize > luma) {
-      planes.push_back(planes[0]);
-      planes[1].offset = luma;
-      planes[1].length = stream.frameSize - luma;
-    }
-    own_buffers_.push_back(std::make_unique<lc::FrameBuffer>(planes));
-  }
-  return true;
-}
-
-/// Kernel buffers are mapped from their beginning; a plane begins at its offset.
-void LibcameraCamera::Impl::map_buffer(const lc::FrameBuffer& buffer) {
-  const auto& plane = buffer.planes()[0];
-  const std::size_t size = plane.offset + plane.length;
-  void* address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, plane.fd.get(), 0);
-  if (address == MAP_FAILED)
-    throw std::runtime_error("camera " + camera_->id() + ": pictures cannot be mapped");
-  mappings_[&buffer] = {address, size};
 }
 
 lc::ControlList LibcameraCamera::Impl::first_controls(const RigOptions& options) {
@@ -287,13 +233,8 @@ std::optional<RigPicture> LibcameraCamera::Impl::picture_of(lc::Request* request
   const auto& [stream, buffer] = *request->buffers().begin();
   const lc::ControlList& metadata = request->metadata();
   const auto taken = metadata.get(lc::controls::SensorTimestamp);
-  const auto mapping = mappings_.find(buffer);
-  if (!taken || mapping == mappings_.end()) return std::nullopt;
-  const auto& plane = buffer->planes()[0];
-  const lc::StreamConfiguration& configuration = stream->configuration();
-  const RawPlane raw{static_cast<const std::uint8_t*>(mapping->second.address) + plane.offset, plane.length,
-                     configuration.stride, static_cast<int>(configuration.size.width),
-                     static_cast<int>(configuration.size.height)};
+  if (!taken) return std::nullopt;
+  const RawPlane raw = buffers_->plane(*buffer, stream->configuration());
   RigPicture picture{side_, {*taken, grey_from_plane(raw, layout_)}, 0, 0};
   if (const auto exposure = metadata.get(lc::controls::ExposureTime)) picture.exposure_us = *exposure;
   if (const auto gain = metadata.get(lc::controls::AnalogueGain)) picture.gain = *gain;

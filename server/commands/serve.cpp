@@ -102,6 +102,8 @@ void announce(const Options& options, const Hub& hub, const std::string& what) {
   const std::string scheme = options.serve.tls_cert.empty() ? "http" : "https";
   std::printf("%s: open %s://%s:%u in a browser (Ctrl-C ends)\n", what.c_str(), scheme.c_str(), host.c_str(),
               static_cast<unsigned>(hub.port()));
+  if (options.serve.insecure_no_auth && !is_loopback(address))
+    std::printf("warning: everybody who can reach this address may look and control (--insecure-no-auth)\n");
   if (options.serve.web_root.empty()) std::printf("warning: the page is not built; run scripts/build\n");
   std::fflush(stdout);
 }
