@@ -35,8 +35,9 @@ export class CameraMarker {
     for (const part of [this.fan, this.edge, this.dot]) part.material.color.copy(this.colour);
   }
 
-  /** Takes a picture over and frees the one before. */
-  setPicture(bitmap: ImageBitmap): void {
+  /** Decodes a picture and frees the one before; rejects if it cannot be read. */
+  async load(image: { readonly data: Uint8Array<ArrayBuffer>; readonly mediaType: string }): Promise<void> {
+    const bitmap = await createImageBitmap(new Blob([image.data], { type: image.mediaType }));
     const { material } = this.picture;
     (material.map?.image as ImageBitmap | undefined)?.close();
     material.map?.dispose();

@@ -182,11 +182,7 @@ export class MapView {
   /** The live picture for the frustum. */
   private takePicture(stream: ImageStream): void {
     const image = stream === ImageStream.LEFT && this.settings.get().solid ? this.live.images.get(stream) : undefined;
-    if (!image) return;
-    void createImageBitmap(new Blob([image.data], { type: image.mediaType })).then((bitmap) => {
-      this.marker.setPicture(bitmap);
-      this.requestDraw();
-    }, () => {}); // an unreadable picture is told by the camera panel
+    if (image) void this.marker.load(image).then(() => this.requestDraw(), () => {}); // unreadable: told by the camera panel
   }
 
   private changeTiles(applied: readonly TileKey[], removed: readonly TileKey[]): void {
@@ -194,7 +190,7 @@ export class MapView {
     this.release(removed);
     const rect = this.held || this.touchedByUser || this.settings.get().follow !== 'free' ? undefined : this.mapRect();
     if (rect) this.glideTo(fit(this.viewport, rect, FIT_MARGIN_PX));
-    this.mark('tiles');
+    if (!this.held) this.mark('tiles'); // a new overview tile must not hide what stands in for it
   }
 
   /** Frees what the tiles hold on the graphics card. */
@@ -253,7 +249,7 @@ export class MapView {
     const [x, y] = walk.walker.position;
     const settings = this.settings.get();
     if (this.stale.settings) this.refreshColours(settings);
-    this.setQuiet(true);
+    this.setUniform('uQuiet', 1); // the floor keeps in the background
     this.grid.mesh.visible = false;
     if (this.live.info) this.tiles.show({ ...this.viewport, x, y, turn: 0, scale: WALK_SCALE }, this.live.info, { ...settings, solid: false }, walk.floor);
     this.stale.settings = false;
@@ -275,7 +271,7 @@ export class MapView {
     const settings = this.settings.get();
     const { info } = this.live;
     if (this.stale.settings) this.refreshColours(settings);
-    this.setQuiet(false);
+    this.setUniform('uQuiet', 0);
     if (this.stale.tiles && info) this.tiles.show(this.viewport, info, settings);
     if (this.stale.path && !this.held) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
     this.path.setScale(this.viewport.scale);
@@ -287,16 +283,14 @@ export class MapView {
     }
   }
 
-  /** The floor of a walkthrough keeps in the background. */
-  private setQuiet(quiet: boolean): void {
-    const uniform = this.uniforms['uQuiet'];
-    if (uniform) uniform.value = quiet ? 1 : 0;
+  private setUniform(name: string, value: number): void {
+    const uniform = this.uniforms[name];
+    if (uniform) uniform.value = value;
   }
 
   private refreshColours(settings: Settings): void {
     applySettings(this.uniforms, settings, this.theme, this.live.info);
-    const pixelRatio = this.uniforms['uPixelRatio'];
-    if (pixelRatio) pixelRatio.value = this.renderer.getPixelRatio();
+    this.setUniform('uPixelRatio', this.renderer.getPixelRatio());
     const colours = classColours(settings.palette, this.theme);
     const [r, g, b] = colours.free;
     this.grid.setInk(0.3 * r + 0.6 * g + 0.1 * b < 128);
