@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "server/access.hpp"
 #include "server/commands/commands.hpp"
 #include "server/commands/mapping_session.hpp"
 #include "server/commands/stored_control.hpp"
