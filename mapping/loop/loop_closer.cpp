@@ -11,8 +11,8 @@ namespace flogmap {
 namespace {
 
 constexpr int kConfirmWithinViews = 5;
-constexpr double kSamePlace_m = 0.1;  // two meetings say the same if their corrections differ less
-constexpr double kSameTurn_rad = 0.035;
+constexpr double kSamePlaceMetres = 0.1;  // two meetings say the same if their corrections differ less
+constexpr double kSameTurnRadians = 0.035;
 
 double angle_of(const SE3& motion) { return Eigen::AngleAxisd(motion.linear()).angle(); }
 
@@ -155,7 +155,7 @@ bool LoopCloser::confirmed(const Meeting& meeting) const {
   if (!pending_ || meeting.view - pending_->view > kConfirmWithinViews) return false;
   const Eigen::Vector3d place = views_[meeting.view].world_from_camera.translation();
   const SE3 a = implied_correction(meeting), b = implied_correction(*pending_);
-  return (a * place - b * place).norm() <= kSamePlace_m && angle_of(a.inverse() * b) <= kSameTurn_rad;
+  return (a * place - b * place).norm() <= kSamePlaceMetres && angle_of(a.inverse() * b) <= kSameTurnRadians;
 }
 
 /// The views stand to one another as the meeting says, as good as exactly.
