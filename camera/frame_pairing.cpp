@@ -52,6 +52,7 @@ std::optional<PairedPictures> FramePairing::match() {
     const bool in_order = !delivered_ns_ || pair.left.timestamp_ns > *delivered_ns_;
     if (std::abs(skew_ns) > options_.max_skew_ns || !in_order) {
       ++counts_.too_skewed;
+      counts_.last_too_skewed_ns = skew_ns;
       continue;
     }
     delivered_ns_ = pair.left.timestamp_ns;

@@ -40,8 +40,9 @@ struct PairingCounts {
   std::int64_t too_skewed = 0;  // belonged together but were taken too far apart; dropped
   std::int64_t alone_left = 0;  // had no partner
   std::int64_t alone_right = 0;
-  std::int64_t last_skew_ns = 0;  // right - left of the newest pair, dropped or not
-  SkewHistogram skew;             // of all of them
+  std::int64_t last_too_skewed_ns = 0;  // right - left of the newest of these
+  std::int64_t last_skew_ns = 0;        // right - left of the newest pair, dropped or not
+  SkewHistogram skew;                   // of all of them
 };
 
 /// Pairs pictures as they arrive. Two belong together if they were taken within half a frame period of one

@@ -44,10 +44,10 @@ std::string list_text(const std::vector<double>& values) {
   return out.str();
 }
 
-std::string transform_text(const Eigen::Isometry3d& transform) {
+std::string transform_text(const Eigen::Isometry3d& transform, const std::string& name = "T_BS") {
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> m = transform.matrix();
-  return "T_BS:\n  cols: 4\n  rows: 4\n  data: " + list_text(std::vector<double>(m.data(), m.data() + 16)) +
-         "\n";
+  return name +
+         ":\n  cols: 4\n  rows: 4\n  data: " + list_text(std::vector<double>(m.data(), m.data() + 16)) + "\n";
 }
 
 std::string sensor_yaml(const CameraIntrinsics& camera, const Eigen::Isometry3d& body_from_camera,
@@ -122,8 +122,10 @@ RecordingWriter::RecordingWriter(fs::path folder, const StereoCalibration& calib
   if (const auto& up = options_.up_in_left_camera)
     left_yaml += "up_in_camera: " + list_text({up->x(), up->y(), up->z()}) + "\n";
   write_text(cam0 / "sensor.yaml", left_yaml);
+  // T_BS says it too, but not to the last bit.
   write_text(cam1 / "sensor.yaml",
-             sensor_yaml(calibration.right, body_from_right, rectified, options_.rate_hz));
+             sensor_yaml(calibration.right, body_from_right, rectified, options_.rate_hz) +
+                 transform_text(calibration.right_from_left, "right_from_left"));
   left_csv_ = open_list(cam0 / "data.csv", "#timestamp [ns],filename\n");
   right_csv_ = open_list(cam1 / "data.csv", "#timestamp [ns],filename\n");
   if (!options_.about.empty()) write_text(folder_ / "recording.json", options_.about + "\n");

@@ -51,6 +51,9 @@ Eigen::Matrix3d checked_rotation(const std::vector<double>& row_major, const std
   }
   const Eigen::Matrix3d given =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(row_major.data());
+  // What is exact already stays as it is, to the last bit: a recording of a recording gives the same map.
+  constexpr double kExact = 4e-15;
+  if ((given * given.transpose()).isIdentity(kExact) && given.determinant() > 0) return given;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(given, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
   constexpr double kRounding = 0.01;

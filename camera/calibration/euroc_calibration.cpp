@@ -21,6 +21,7 @@ EurocCamera read_euroc_camera(const std::filesystem::path& sensor_yaml) {
   set_distortion(camera.intrinsics, yaml::text(root, {file, "distortion_model"}),
                  yaml::numbers(root, {file, "distortion_coefficients"}), file + ": distortion_coefficients");
   camera.body_from_sensor = yaml::transform(root, {file, "T_BS"});
+  if (root["right_from_left"]) camera.right_from_left = yaml::transform(root, {file, "right_from_left"});
   camera.rectified = root["rectified"] && yaml::text(root, {file, "rectified"}) == "true";
   return camera;
 }
@@ -49,7 +50,8 @@ StereoCalibration read_euroc_pair(const std::filesystem::path& left_yaml,
   calibration.left = left.intrinsics;
   calibration.right = right.intrinsics;
   calibration.body_from_left = left.body_from_sensor;
-  calibration.right_from_left = right.body_from_sensor.inverse() * left.body_from_sensor;
+  calibration.right_from_left =
+      right.right_from_left.value_or(right.body_from_sensor.inverse() * left.body_from_sensor);
   calibration.rectified = left.rectified && right.rectified;
   calibration.dialect = "euroc";
   calibration.origin = left_yaml.string();

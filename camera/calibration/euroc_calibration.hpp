@@ -12,6 +12,7 @@ namespace flogmap {
 struct EurocCamera {
   CameraIntrinsics intrinsics;
   Eigen::Isometry3d body_from_sensor = Eigen::Isometry3d::Identity();  // T_BS
+  std::optional<Eigen::Isometry3d> right_from_left{};  // which our own recordings say of the right camera
   bool rectified = false;  // "rectified: true", which our own recordings of rectified pictures say
 };
 

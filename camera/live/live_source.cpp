@@ -91,7 +91,7 @@ SkippedFrames LiveSource::skipped() const {
   if (counts.too_skewed > 0) {
     std::snprintf(text, sizeof text,
                   "left and right were taken %.1f ms apart, allowed are %.1f ms (--max-skew-ms)",
-                  std::abs(static_cast<double>(counts.last_skew_ns)) / kNsPerMs, options_.max_skew_ms);
+                  std::abs(static_cast<double>(counts.last_too_skewed_ns)) / kNsPerMs, options_.max_skew_ms);
   } else if (skipped.count > 0) {
     std::snprintf(text, sizeof text, "%lld left and %lld right pictures had no partner",
                   static_cast<long long>(counts.alone_left), static_cast<long long>(counts.alone_right));

@@ -102,6 +102,29 @@ TEST(UnbreakableRecording, AFullDiskIsSaidAndCostsOnlyThePairThatDoesNotFit) {
   EXPECT_EQ(count_whole_pairs(folder.path()), 5);
 }
 
+TEST(UnbreakableRecording, TheCalibrationComesBackToTheLastBit) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto some_pose = [&] {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() =
+        Eigen::Quaterniond(any(random), any(random), any(random), 1.5).normalized().toRotationMatrix();
+    pose.translation() = Eigen::Vector3d(any(random), any(random), any(random));
+    return pose;
+  };
+  for (int i = 0; i < 20; ++i) {
+    const testing::TemporaryFolder folder;
+    StereoCalibration pair = plain_pair(160, 120);
+    pair.body_from_left = some_pose();
+    pair.right_from_left = some_pose();
+    RecordingWriter writer(folder.path(), pair, {});
+    writer.write({0, noise(160, 120, random), noise(160, 120, random)});
+    const auto read = open_source({.spec = "euroc:" + folder.path().string()})->calibration();
+    EXPECT_EQ(read->right_from_left.matrix(), pair.right_from_left.matrix());
+    EXPECT_EQ(read->body_from_left.matrix(), pair.body_from_left.matrix());
+  }
+}
+
 TEST(UnbreakableRecording, GravityIsKept) {
   const testing::TemporaryFolder folder;
   std::mt19937 random(1);
