@@ -15,12 +15,12 @@ namespace flogmap {
 namespace {
 
 // Penalties in units of the window cost, 0 to 27: how many more differing comparisons a step is worth.
-constexpr int kSmallStep = 9;      // P1: slanted surfaces
+constexpr int kSmallStep = 12;     // P1: slanted surfaces
 constexpr int kJump = 90;          // P2: depth edges, where the picture is smooth
 constexpr int kLeastJump = 12;     // P2 across the strongest edge of the picture
 constexpr double kJumpEdge = 0.1;  // P2 = kJump / (1 + kJumpEdge * step of brightness)
-constexpr int kMaxLeftRightPx = 3;
-constexpr int kMaxCost = 60;           // of the half sum of four paths: on average more than 30 per path
+constexpr int kMaxLeftRightPx = 4;
+constexpr int kMaxCost = 80;           // of the half sum of four paths: on average more than 40 per path
 constexpr int kWarmUpRows = 16;        // paths start this far outside a band
 constexpr int kLargestBandPair = 160;  // rows
 
