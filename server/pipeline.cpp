@@ -73,7 +73,6 @@ void Pipeline::run_stage(Stage stage) {
 }
 
 // ---- capture thread
-
 void Pipeline::capture() {
   const std::string epoch = options_.continued.epoch;
   generation_ = {1, epoch.empty() ? random_epoch() : epoch, epoch.empty() ? "started" : "continued"};
@@ -152,7 +151,6 @@ void Pipeline::go_to(double position_s) {
 }
 
 // ---- vision thread
-
 void Pipeline::see() {
   while (std::optional<Captured> captured = frames_.pop()) {
     if (captured->generation.number != seen_generation_) begin_generation(captured->generation);
