@@ -10,6 +10,7 @@ const SHOWN_MS = { info: 6000, warning: 12000 };
 export function notices(page: Page): HTMLElement {
   const element = h('div', { class: 'notices', role: 'status', 'aria-live': 'polite' });
   page.live.noticed.on(({ tone, text }: Notice) => {
+    if (element.lastElementChild?.textContent === text) return; // said already
     const note = h('div', { class: 'notice', 'data-tone': tone }, tone === 'warning' && icon('warning'), h('span', {}, text));
     element.append(note);
     while (element.children.length > 3) element.firstElementChild?.remove();

@@ -82,7 +82,7 @@ function showAge(page: Page, stream: ImageStream, age: HTMLElement): void {
   if (!image) return;
   const ms = performance.now() - image.receivedAt;
   age.classList.toggle('old', ms > STALE_AFTER_MS);
-  setText(age, ms > STALE_AFTER_MS ? `${Math.round(ms / 1000)} s old` : `t = ${(Number(image.timeNs / 1000000n) / 1000).toFixed(1)} s`);
+  setText(age, ms > STALE_AFTER_MS ? `${Math.round(ms / 1000)} s old` : `t = ${(Number((image.timeNs - (page.live.trajectory[0]?.timeNs ?? image.timeNs)) / 1000000n) / 1000).toFixed(1)} s`);
 }
 
 function paint(page: Page, canvas: HTMLCanvasElement, bitmap: ImageBitmap, stream: ImageStream): void {

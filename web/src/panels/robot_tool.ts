@@ -88,18 +88,18 @@ export class RobotTool {
     const { robotRadius, robotHeight } = this.page.settings.get();
     const robot = { radiusM: robotRadius, heightM: robotHeight };
     const { from, to } = this;
-    if (from && to) await this.askRoute(aloud, this.page.backend.route(from, to, robot), to);
+    if (from && to) await this.askRoute(this.page.backend.route(from, to, robot), to);
     const start = from ?? this.page.live.pose?.pose ?? this.page.live.trajectory.at(-1)?.pose;
     if (this.reachWanted && start) await this.page.backend.reach(start, robot).then((reach) => (this.reach = reach), (error: unknown) => this.failed(aloud, error, () => (this.reach = undefined)));
     this.show();
   }
 
-  private async askRoute(aloud: boolean, asked: Promise<Route>, to: Point): Promise<void> {
+  private async askRoute(asked: Promise<Route>, to: Point): Promise<void> {
     try {
       const route = await asked;
       if (this.to === to) Object.assign(this, { route, trouble: '' });
     } catch (error) {
-      this.failed(aloud, error, () => (this.route = undefined));
+      this.route = undefined;
       this.trouble = `No way: ${error instanceof Error ? error.message : String(error)}.`;
     }
   }
