@@ -9,7 +9,8 @@ import { animatedPng } from './animated_png.mjs';
 const [source = 'sim:room', folder = 'docs/gallery'] = process.argv.slice(2);
 const web = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '..');
 const ARGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
-const FRAMES = 24;
+const FRAMES = Number(process.env.GALLERY_FRAMES ?? 24);
+const only = process.env.GALLERY_ONLY?.split(','); // names of pictures; the animation is left out then
 const MAPPED_S = Number(process.env.GALLERY_SECONDS ?? 45); // how long the camera walks before the pictures
 
 function startProgram() {
@@ -56,14 +57,33 @@ async function walk(page, part) {
   await page.waitForFunction(() => window.__flog.walk.shown > 4 && window.__flog.walk.missing === 0);
 }
 
-/** Two clicks along the path, and where a robot gets to. */
-async function route(page) {
+/** Far apart: two places of the reach of a robot that starts where the camera had looked. */
+async function endsOfAWay() {
   const { points } = await (await fetch(`${url}/api/v1/maps/live/trajectory`)).json();
-  await page.waitForTimeout(2000);
+  for (const part of [0.1, 0.4, 0.7]) {
+    const { position: [px, py], orientation_xyzw: [x, y, z, w] } = points[Math.floor(part * points.length)];
+    const from = [px + 3 * (x * z + w * y), py + 3 * (y * z - w * x)];
+    const answer = await fetch(`${url}/api/v1/maps/live/reachable`, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ from, robot_radius_m: 0.3, robot_height_m: 0.7 }) });
+    if (!answer.ok) continue;
+    const { origin, cell_size, width, runs } = await answer.json();
+    const reached = [];
+    runs.reduce((at, length, i) => {
+      for (let k = at; i % 2 === 1 && k < at + length; k += 9) reached.push([origin[0] + (k % width) * cell_size, origin[1] + Math.floor(k / width) * cell_size]);
+      return at + length;
+    }, 0);
+    const away = ([ax, ay]) => Math.hypot(ax - reached[0][0], ay - reached[0][1]);
+    if (reached.length > 100) return [reached[0], reached.reduce((a, b) => (away(b) > away(a) ? b : a))];
+  }
+  return [];
+}
+
+/** A way by two clicks, and where the robot gets to at all. */
+async function route(page) {
+  await page.waitForTimeout(4000);
   await page.locator('.map > canvas').focus();
   await page.keyboard.press('r');
-  for (const at of [0.02, 0.5]) {
-    const [x, y] = points[Math.floor(at * points.length)].position;
+  await page.getByRole('slider', { name: 'Robot height' }).fill('0.7');
+  for (const [x, y] of await endsOfAWay()) {
     const position = await page.evaluate(([wx, wy]) => window.__flog.project(wx, wy), [x, y]);
     await page.locator('.map > canvas').click({ position });
   }
@@ -74,34 +94,31 @@ const DESKTOP = { width: 1280, height: 800 };
 const SHOTS = [
   ['live-dark', DESKTOP, 'dark', ''],
   ['live-light', DESKTOP, 'light', ''],
-  ['large', { width: 1920, height: 1080 }, 'dark', ''],
   ['paper-grey', DESKTOP, 'light', '#p=grey'],
   ['motion', DESKTOP, 'dark', '#s=motion&p=viridis'],
-  ['classes', DESKTOP, 'dark', '', async (page) => { await page.getByRole('switch', { name: 'Three classes only' }).click(); }],
-  ['heights', DESKTOP, 'dark', '', async (page) => { await page.getByRole('switch', { name: 'Colour by height' }).click(); }],
   ['solid', DESKTOP, 'dark', '', async (page) => { await page.getByRole('switch', { name: 'Colour by height' }).click(); await page.locator('.map > canvas').focus(); await page.keyboard.press('v'); }],
   ['spread', DESKTOP, 'light', '', async (page) => {
     await page.getByRole('switch', { name: 'Colour by height' }).click();
     await page.locator('.map > canvas').focus();
     await page.keyboard.press('v');
-    await page.getByLabel('Spread layers').fill('1');
+    for (let i = 0; i < 2; ++i) await page.keyboard.press('-');
+    await page.getByRole('slider', { name: 'Spread layers' }).fill('1');
   }],
   ['cell', DESKTOP, 'dark', '', async (page) => { await page.locator('.map > canvas').click({ position: { x: 330, y: 250 } }); await page.locator('summary', { hasText: 'Camera' }).click(); }],
   ['status', DESKTOP, 'dark', '', async (page) => { for (const title of ['Camera', 'Cell']) await page.locator('summary', { hasText: title }).click(); await page.waitForTimeout(8000); }],
   ['route', DESKTOP, 'dark', '#s=motion&p=grey', route],
   ['walkthrough', DESKTOP, 'dark', '', (page) => walk(page, 0.55)],
-  ['walkthrough-light', DESKTOP, 'light', '', (page) => walk(page, 0.2)],
   ['phone-walkthrough', { width: 390, height: 844 }, 'dark', '', (page) => walk(page, 0.8)],
   ['phone', { width: 390, height: 844 }, 'dark', ''],
-  ['phone-layers', { width: 390, height: 844 }, 'light', '', async (page) => { await page.locator('.tabs button').first().click(); }],
 ];
 
 const { child, url } = await startProgram();
 const browser = await chromium.launch({ executablePath: process.env.FLOGMAP_CHROMIUM ?? '/usr/bin/chromium', args: ARGS });
 try {
-  await film(browser, url);
+  if (only) await new Promise((resolve) => { setTimeout(resolve, 1000 * MAPPED_S); });
+  else await film(browser, url);
   await fetch(`${url}/api/v1/session:pause`, { method: 'POST' });
-  for (const [name, size, scheme, hash, act] of SHOTS) {
+  for (const [name, size, scheme, hash, act] of SHOTS.filter(([name]) => !only || only.includes(name))) {
     const page = await openPage(browser, url, size, scheme, hash);
     await act?.(page);
     await page.waitForTimeout(2500);
