@@ -105,12 +105,14 @@ class TileFile {
   bool carve(std::size_t size, std::vector<char*>& free) {
     const std::size_t bytes = std::max(kChunkBytes / size, std::size_t{1}) * size;
     // Room on the disk is taken now: a page without it would end the program when it is written to.
-    if (::posix_fallocate(file_, static_cast<off_t>(file_bytes_), static_cast<off_t>(bytes)) != 0) return false;
+    if (::posix_fallocate(file_, static_cast<off_t>(file_bytes_), static_cast<off_t>(bytes)) != 0)
+      return false;
     void* chunk =
         ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file_, static_cast<off_t>(file_bytes_));
     if (chunk == MAP_FAILED) return false;
     file_bytes_ += bytes;
-    for (std::size_t at = bytes; at >= size; at -= size) free.push_back(static_cast<char*>(chunk) + at - size);
+    for (std::size_t at = bytes; at >= size; at -= size)
+      free.push_back(static_cast<char*>(chunk) + at - size);
     return true;
   }
 

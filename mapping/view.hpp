@@ -14,7 +14,8 @@ namespace flogmap {
 /// A rigid transform. Named target_from_source, always: p_in_target = target_from_source * p_in_source.
 using SE3 = Eigen::Isometry3d;
 
-/// Covariance of a rigid motion; order (translation x y z [m], rotation x y z [rad]), perturbation on the left.
+/// Covariance of a rigid motion; order (translation x y z [m], rotation x y z [rad]), perturbation on the
+/// left.
 using Covariance6 = Eigen::Matrix<double, 6, 6>;
 
 /// Disparity d = x_l - x_r of every pixel of the left picture, in pixels; NaN where there is no match.
@@ -49,7 +50,7 @@ struct Match {
 /// What odometry says of one frame.
 struct Tracking {
   TrackingState state = TrackingState::initialising;
-  SE3 odometry_from_camera = SE3::Identity();  // meaningful if has_pose()
+  SE3 odometry_from_camera = SE3::Identity();    // meaningful if has_pose()
   Covariance6 covariance = Covariance6::Zero();  // of the motion since the key frame
   std::vector<Match> matches;
   std::vector<Eigen::Vector2f> corners_px;  // of the current left picture

@@ -99,9 +99,7 @@ void Hub::begin(MapBegin map) { network_->wake(network_->mailbox_.begin(std::mov
 void Hub::publish(std::uint64_t revision, std::vector<TileUpdate> tiles) {
   network_->wake(network_->mailbox_.publish(revision, std::move(tiles)));
 }
-void Hub::publish_view(SharedView view) {
-  network_->wake(network_->mailbox_.publish_view(std::move(view)));
-}
+void Hub::publish_view(SharedView view) { network_->wake(network_->mailbox_.publish_view(std::move(view))); }
 void Hub::publish_tracking(TrackingReport report) {
   network_->wake(network_->mailbox_.publish_tracking(std::move(report)));
 }

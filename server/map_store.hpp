@@ -26,7 +26,7 @@ struct StoredMap {
   std::vector<TrajectoryEntry> trajectory;  // in order of frames
   std::string options_json = "{}";          // the options it was made with
   std::string calibration_json = "{}";
-  std::vector<SharedView> views;            // in order of number
+  std::vector<SharedView> views;  // in order of number
 };
 
 /// The whole map of a file, checked to the last byte before anything is returned; nothing is written to it.

@@ -1,5 +1,5 @@
-// The values that the mapping side hands to the network side. Each is complete in itself and may be dropped in
-// favour of a newer one.
+// The values that the mapping side hands to the network side. Each is complete in itself and may be dropped
+// in favour of a newer one.
 #pragma once
 
 #include <cstdint>
@@ -60,9 +60,9 @@ struct MapBegin {
   StereoCamera camera;
   std::string reason;  // in words, for viewers: "started", "reset by operator", "seek"
   std::uint64_t revision = 0;
-  std::vector<TileUpdate> tiles;             // of a continued map
+  std::vector<TileUpdate> tiles;            // of a continued map
   std::vector<TrajectoryEntry> trajectory;  // of a continued map
-  std::vector<SharedView> views;             // of a continued map
+  std::vector<SharedView> views;            // of a continued map
 };
 
 }  // namespace flogmap

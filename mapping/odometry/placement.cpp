@@ -38,9 +38,11 @@ class Placing {
 
   PlacementResult result() && {
     const bool many = best_.num_inliers >= options_.min_inliers;
-    const bool certain = best_.sigma_m() <= options_.max_sigma_m && best_.sigma_rad() <= options_.max_sigma_rad;
+    const bool certain =
+        best_.sigma_m() <= options_.max_sigma_m && best_.sigma_rad() <= options_.max_sigma_rad;
     if (many && certain) return {std::move(best_), ""};
-    if (many) return {std::nullopt, "the landmarks found again do not fix the pose: far away, bunched or in a line"};
+    if (many)
+      return {std::nullopt, "the landmarks found again do not fix the pose: far away, bunched or in a line"};
     if (best_.num_inliers == 0) return {std::nullopt, "too few corners agree on a motion"};
     return {std::nullopt, "too few landmarks found again (" + std::to_string(best_.num_inliers) + " of " +
                               std::to_string(options_.min_inliers) + " needed)"};

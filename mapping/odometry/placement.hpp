@@ -18,8 +18,8 @@ struct PlacementOptions {
   ConsistencyOptions consistency;
   MotionOptions motion;
   double search_radius_px = 4;    // around the place where a hypothesis puts a landmark
-  double max_sigma_m = 0.25;        // of the position: a pose less certain,
-  double max_sigma_rad = 0.03;      // or turned by an angle less certain, is none
+  double max_sigma_m = 0.25;      // of the position: a pose less certain,
+  double max_sigma_rad = 0.03;    // or turned by an angle less certain, is none
   int min_inliers = 12;           // fewer: not placed
   int many_inliers = 100;         // a pose with that many is not doubted,
   int convincing_inliers = 30;    // nor one with this many,

@@ -42,7 +42,7 @@ double mean_grey(const Image<std::uint8_t>& image) {
 
 constexpr double kDarkGrey = 20;
 constexpr int kMinForSwapHint = 100;  // corners without a disparity
-constexpr int kKeyFramesToTry = 3;  // while not lost
+constexpr int kKeyFramesToTry = 3;    // while not lost
 
 }  // namespace
 

@@ -152,13 +152,14 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   const StatusReport status = pipeline.status();
   const nlohmann::json document = statistics(status, map, wall_s);
   write_text(std::filesystem::path(options.out_dir) / "stats.json", document.dump(2));
-  std::printf("%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %llu loops; %.1f frames/s; %s\n",
-              static_cast<unsigned long long>(status.frames), static_cast<unsigned long long>(status.tracked),
-              static_cast<unsigned long long>(status.lost),
-              static_cast<unsigned long long>(status.skipped_frames),
-              static_cast<unsigned long long>(status.mapped_views - status.waiting_views),
-              static_cast<unsigned long long>(status.loops), document["fps"].get<double>(),
-              collector.alignment().c_str());
+  std::printf(
+      "%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %llu loops; %.1f frames/s; "
+      "%s\n",
+      static_cast<unsigned long long>(status.frames), static_cast<unsigned long long>(status.tracked),
+      static_cast<unsigned long long>(status.lost), static_cast<unsigned long long>(status.skipped_frames),
+      static_cast<unsigned long long>(status.mapped_views - status.waiting_views),
+      static_cast<unsigned long long>(status.loops), document["fps"].get<double>(),
+      collector.alignment().c_str());
   if (status.waiting_views > 0) {
     std::printf("warning: %llu views are not in the map: their place was not recognised after a loss\n",
                 static_cast<unsigned long long>(status.waiting_views));

@@ -76,7 +76,7 @@ class ServeObserver final : public PipelineObserver {
   Hub* hub_ = nullptr;
   StoreWriter* store_ = nullptr;
   std::vector<TrajectoryEntry> path_;
-  ViewKeeper keeper_;  // map thread
+  ViewKeeper keeper_;             // map thread
   std::int64_t tracked_ns_ = -1;  // newest frame whose pose the hub has
 };
 

@@ -34,7 +34,9 @@ struct StoreMailbox {
   std::vector<TrajectoryEntry> new_poses;
   std::map<std::int64_t, SharedView> views;
 
-  [[nodiscard]] bool empty() const { return !begin && tiles.empty() && !path && new_poses.empty() && views.empty(); }
+  [[nodiscard]] bool empty() const {
+    return !begin && tiles.empty() && !path && new_poses.empty() && views.empty();
+  }
   /// Adds what was said later: a new map or path replaces what was before, a newer tile the older one.
   void merge(StoreMailbox later);
 };

@@ -63,7 +63,8 @@ TEST_F(TileMemoryTest, EveryTileComesBackByteForByte) {
   for (std::uint32_t seed = 0; seed < 400; ++seed) tiles.push_back(tile_of(seed));
   EXPECT_EQ(TileMemory::use().allocated_bytes, 400 * kTileBytes);
   EXPECT_EQ(TileMemory::use().paged_out_bytes, 400 * kTileBytes - kLimit);
-  for (std::uint32_t seed = 0; seed < 400; ++seed) ASSERT_EQ(tiles[seed]->cells, tile_of(seed)->cells) << seed;
+  for (std::uint32_t seed = 0; seed < 400; ++seed)
+    ASSERT_EQ(tiles[seed]->cells, tile_of(seed)->cells) << seed;
 }
 
 TEST_F(TileMemoryTest, MemoryStaysWithinItsLimitWhateverIsRead) {
@@ -97,9 +98,7 @@ TEST_F(TileMemoryTest, ThreadsMayMakeReadAndDropTilesTogether) {
       if (i % 40 == 0) TileMemory::trim();
     }
   };
-  {
-    const std::jthread one(work, 10'000), two(work, 20'000);
-  }
+  { const std::jthread one(work, 10'000), two(work, 20'000); }
   EXPECT_EQ(wrong, 0);
 }
 

@@ -260,7 +260,8 @@ TEST(OpenApi, NamesEveryRouteAndNoOther) {
   for (const Route& route : all_routes()) {
     if (route.pattern == "/docs.css") continue;
     std::string path(route.pattern);
-    if (const auto at = path.find("/views/{}"); at != std::string::npos) path.replace(at, 9, "/views/{n}.glb");
+    if (const auto at = path.find("/views/{}"); at != std::string::npos)
+      path.replace(at, 9, "/views/{n}.glb");
     for (const std::string name : {"{id}", "{layer}", "{level}", "{tx}", "{ty}"}) {
       if (path.find("/frames/") != std::string::npos) break;
       const auto at = path.find("{}");

@@ -94,7 +94,8 @@ TEST(PipelineRecordings, AStretchThatIsFoundNowhereWaitsUntilItsPlaceIsRecognise
   EXPECT_TRUE(reports.back().world_from_camera) << "back at the start, the place is known again";
   EXPECT_GT(mapped->status.loops, 0U);
   EXPECT_EQ(mapped->status.waiting_views, 0U);
-  EXPECT_EQ(mapped->status.tracked, mapped->witness.path.size()) << "those that waited have found their place";
+  EXPECT_EQ(mapped->status.tracked, mapped->witness.path.size())
+      << "those that waited have found their place";
   EXPECT_GE(mapped->witness.path.size(), 290U);
   EXPECT_LE(worst_mapped_pose_m(mapped->witness.path, *folder / "groundtruth.tum"), 0.05);
 }

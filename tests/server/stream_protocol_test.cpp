@@ -129,15 +129,15 @@ TEST_F(ProtocolTest, VisibleTilesComeFirst) {
   EXPECT_EQ(mirror.tiles().begin()->first.level, 0U);
 }
 
-// A viewer saw more than the store kept, then the program was killed: the continued map begins far above, with
-// every tile at the new revision, and without the tile that was lost.
+// A viewer saw more than the store kept, then the program was killed: the continued map begins far above,
+// with every tile at the new revision, and without the tile that was lost.
 TEST_F(ProtocolTest, AfterAKillAViewerKeepsNothingThatWasNeverStored) {
   MapBegin continued = walk_.begin("0000000000000001", "continued");
   continued.revision = walk_.revision() + 1'000'000;
   const auto& tiles = state_.live->board().tiles();
   for (const auto& [index, tile] : tiles) {
-    continued.tiles.push_back({index, continued.revision,
-                               std::make_shared<const Tile>(Tile{tile->cells, continued.revision})});
+    continued.tiles.push_back(
+        {index, continued.revision, std::make_shared<const Tile>(Tile{tile->cells, continued.revision})});
   }
   TileMirror viewer;
   const auto talk = [&](const Resume& known) {

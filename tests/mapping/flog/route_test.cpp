@@ -209,7 +209,8 @@ TEST(Reachable, IsWhereAWayLeadsAndNothingElse) {
     for (int i = 0; i < 60; ++i) {
       RouteRequest request = way(1, 1, x(random), y(random), radius);
       request.snap_m = 0;
-      const CellIndex cell{static_cast<int>(request.to_m.x() / 0.02), static_cast<int>(request.to_m.y() / 0.02)};
+      const CellIndex cell{static_cast<int>(request.to_m.x() / 0.02),
+                           static_cast<int>(request.to_m.y() / 0.02)};
       const bool reached = area.reached.grey.at(area.reached.pixel_x(cell), area.reached.pixel_y(cell)) != 0;
       EXPECT_EQ(reached, find_route(map, request).found()) << request.to_m.transpose();
     }
