@@ -43,23 +43,13 @@ class BoundedQueue {
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     filled_.wait(lock, [&] { return closed_ || !values_.empty(); });
-    if (values_.empty()) return std::nullopt;
-    std::optional<T> value(std::move(values_.front()));
-    values_.pop_front();
-    lock.unlock();
-    room_.notify_one();
-    return value;
+    return take_first(lock);
   }
 
   /// The oldest value if there is one; does not wait.
   std::optional<T> try_pop() {
     std::unique_lock lock(mutex_);
-    if (values_.empty()) return std::nullopt;
-    std::optional<T> value(std::move(values_.front()));
-    values_.pop_front();
-    lock.unlock();
-    room_.notify_one();
-    return value;
+    return take_first(lock);
   }
 
   void close() {
@@ -86,6 +76,15 @@ class BoundedQueue {
   }
 
  private:
+  std::optional<T> take_first(std::unique_lock<std::mutex>& lock) {
+    if (values_.empty()) return std::nullopt;
+    std::optional<T> value(std::move(values_.front()));
+    values_.pop_front();
+    lock.unlock();
+    room_.notify_one();
+    return value;
+  }
+
   const std::size_t capacity_;
   const WhenFull when_full_;
   mutable std::mutex mutex_;

@@ -114,4 +114,18 @@ bool coefficient_count_fits(Distortion distortion, std::size_t count) {
   return false;
 }
 
+const char* name_of(Distortion distortion) {
+  switch (distortion) {
+    case Distortion::none:
+      return "none";
+    case Distortion::radtan:
+      return "radtan";
+    case Distortion::rational:
+      return "rational";
+    case Distortion::equidistant:
+      return "equidistant";
+  }
+  return "none";
+}
+
 }  // namespace flogmap

@@ -18,4 +18,7 @@ namespace flogmap {
 /// How many coefficients a model has: {4, 5} for radtan, {8} for rational, {4} for equidistant, {0} for none.
 [[nodiscard]] bool coefficient_count_fits(Distortion distortion, std::size_t count);
 
+/// "none", "radtan", "rational" or "equidistant".
+[[nodiscard]] const char* name_of(Distortion distortion);
+
 }  // namespace flogmap

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "camera/calibration/calibration_review.hpp"
+#include "camera/calibration/distortion.hpp"
 #include "camera/rectifier.hpp"
 #include "server/commands/commands.hpp"
 #include "server/options.hpp"
@@ -38,24 +39,10 @@ std::vector<StereoFrame> some_pairs(StereoSource& source) {
   return frames;
 }
 
-const char* model_name(Distortion distortion) {
-  switch (distortion) {
-    case Distortion::none:
-      return "none";
-    case Distortion::radtan:
-      return "radtan";
-    case Distortion::rational:
-      return "rational";
-    case Distortion::equidistant:
-      break;
-  }
-  return "fisheye";
-}
-
 void print(const StereoCalibration& calibration, const CalibrationReview& review,
            const StereoSource& source) {
   std::printf("dialect          %s (%s)\n", calibration.dialect.c_str(), calibration.origin.c_str());
-  std::printf("lenses           %s\n", model_name(calibration.left.distortion));
+  std::printf("lenses           %s\n", name_of(calibration.left.distortion));
   std::printf("resolution       %dx%d\n", calibration.left.width_px, calibration.left.height_px);
   std::printf("baseline         %.2f mm\n", 1000 * calibration.right_from_left.translation().norm());
   std::printf("matches          %zu corners, %.0f %% on the same row\n", review.num_matches,

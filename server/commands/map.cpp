@@ -112,6 +112,44 @@ std::int64_t frames_to_map(const SourceInfo& info, int max_frames) {
   throw UsageError(info.spec + ": has no end; say how many frames to map with --max-frames N");
 }
 
+PipelineOptions batch_options(const Options& options, std::int64_t num_frames) {
+  PipelineOptions batch;
+  batch.rate = 0;
+  batch.end_with_source = true;
+  batch.max_frames = num_frames;
+  batch.statistics_window = 1U << 20U;
+  batch.loop_closure = loop_options(options);
+  return batch;
+}
+
+StoredMap collected_map(const MapSnapshot& snapshot, const MapCollector& collector) {
+  StoredMap map;
+  map.epoch = collector.epoch();
+  map.info = snapshot.info;
+  map.revision = snapshot.revision;
+  for (const auto& [index, tile] : snapshot.tiles) map.tiles.push_back({index, tile->revision, tile});
+  map.trajectory = collector.path();
+  map.views = collector.views();
+  return map;
+}
+
+void print_summary(const StatusReport& status, double fps, const std::string& alignment,
+                   const std::string& folder) {
+  const auto count = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
+  std::printf(
+      "%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %llu loops; %.1f frames/s; "
+      "%s\n",
+      count(status.frames), count(status.tracked), count(status.lost), count(status.skipped_frames),
+      count(status.mapped_views - status.waiting_views), count(status.loops), fps, alignment.c_str());
+  if (status.waiting_views > 0) {
+    std::printf("warning: %llu views are not in the map: their place was not recognised after a loss\n",
+                count(status.waiting_views));
+  }
+  for (const std::string& warning : status.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::printf("written to %s: map.flog, fused.png, path.png, layer_*.png, ros/, trajectory.tum, stats.json\n",
+              folder.c_str());
+}
+
 int run_map(const Options& options, int max_frames, const std::string& options_json) {
   if (options.out_dir.empty()) throw UsageError("--out is missing; for instance --out /tmp/map");
   MappingSession session = open_session(options);
@@ -120,15 +158,9 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   const StereoCamera camera = session.front_end.camera();
   const std::int64_t num_frames = frames_to_map(session.source->info(), max_frames);
   MapCollector collector(num_frames);
-  PipelineOptions pipeline_options;
-  pipeline_options.rate = 0;
-  pipeline_options.end_with_source = true;
-  pipeline_options.max_frames = num_frames;
-  pipeline_options.statistics_window = 1U << 20U;
-  pipeline_options.loop_closure = loop_options(options);
   const auto start = Clock::now();
-  Pipeline pipeline(pipeline_options, std::move(session.source), std::move(session.front_end),
-                    std::move(session.integrator), collector);
+  Pipeline pipeline(batch_options(options, num_frames), std::move(session.source),
+                    std::move(session.front_end), std::move(session.integrator), collector);
   {
     const InterruptWatcher ctrl_c([&] { pipeline.stop(); });  // what was mapped until then is written
     pipeline.start();
@@ -137,36 +169,15 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   collector.finish();
   const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
 
-  const MapSnapshot snapshot = pipeline.integrator().snapshot();
-  StoredMap map;
-  map.epoch = collector.epoch();
-  map.info = snapshot.info;
+  StoredMap map = collected_map(pipeline.integrator().snapshot(), collector);
   map.camera = camera;
-  map.revision = snapshot.revision;
-  for (const auto& [index, tile] : snapshot.tiles) map.tiles.push_back({index, tile->revision, tile});
-  map.trajectory = collector.path();
-  map.views = collector.views();
   map.options_json = options_json;
   map.calibration_json = calibration_json(session.calibration, camera);
   write_map_folder(options.out_dir, map, options.serve.operators);
   const StatusReport status = pipeline.status();
   const nlohmann::json document = statistics(status, map, wall_s);
   write_text(std::filesystem::path(options.out_dir) / "stats.json", document.dump(2));
-  std::printf(
-      "%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %llu loops; %.1f frames/s; "
-      "%s\n",
-      static_cast<unsigned long long>(status.frames), static_cast<unsigned long long>(status.tracked),
-      static_cast<unsigned long long>(status.lost), static_cast<unsigned long long>(status.skipped_frames),
-      static_cast<unsigned long long>(status.mapped_views - status.waiting_views),
-      static_cast<unsigned long long>(status.loops), document["fps"].get<double>(),
-      collector.alignment().c_str());
-  if (status.waiting_views > 0) {
-    std::printf("warning: %llu views are not in the map: their place was not recognised after a loss\n",
-                static_cast<unsigned long long>(status.waiting_views));
-  }
-  for (const std::string& warning : status.warnings) std::printf("warning: %s\n", warning.c_str());
-  std::printf("written to %s: map.flog, fused.png, path.png, layer_*.png, ros/, trajectory.tum, stats.json\n",
-              options.out_dir.c_str());
+  print_summary(status, document["fps"].get<double>(), collector.alignment(), options.out_dir);
   return 0;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "camera/calibration/distortion.hpp"
 #include "mapping/odometry/trajectory_error.hpp"
 #include "mapping/tile_memory.hpp"
 
@@ -65,20 +66,6 @@ MappingSession open_unchecked(const Options& options) {
   return {std::move(source), *calibration, std::move(front_end), std::move(integrator)};
 }
 
-const char* distortion_name(Distortion distortion) {
-  switch (distortion) {
-    case Distortion::none:
-      return "none";
-    case Distortion::radtan:
-      return "radtan";
-    case Distortion::rational:
-      return "rational";
-    case Distortion::equidistant:
-      return "equidistant";
-  }
-  return "none";
-}
-
 json camera_json(const CameraIntrinsics& camera) {
   return {{"width_px", camera.width_px},
           {"height_px", camera.height_px},
@@ -86,7 +73,7 @@ json camera_json(const CameraIntrinsics& camera) {
           {"fy_px", camera.fy_px},
           {"cx_px", camera.cx_px},
           {"cy_px", camera.cy_px},
-          {"distortion", distortion_name(camera.distortion)},
+          {"distortion", name_of(camera.distortion)},
           {"coefficients", camera.coefficients}};
 }
 

@@ -189,6 +189,26 @@ MapStore open_store(const std::string& file) {
   }
 }
 
+/// Maps and serves until the hub is told to end; returns why the mapping failed, if it did.
+template <typename Announce>
+std::exception_ptr serve_until_end(Pipeline& pipeline, Hub& hub, const Announce& announce_it) {
+  std::exception_ptr failure;
+  pipeline.start();
+  std::jthread watch([&] {
+    try {
+      pipeline.wait();
+    } catch (...) {
+      failure = std::current_exception();
+      hub.drain("the mapping failed");
+    }
+  });
+  announce_it();
+  hub.run();
+  pipeline.stop();
+  watch.join();  // it may still be writing down why
+  return failure;
+}
+
 int serve_source(const Options& options, HubInfo info) {
   MappingSession session = open_session(options);
   info.calibration_json = calibration_json(session.calibration, session.front_end.camera());
@@ -210,21 +230,8 @@ int serve_source(const Options& options, HubInfo info) {
   add_stored_maps(hub, options.maps_dir);
   observer.connect(&hub, store.get());
   hub.drain_on_signals();
-  std::exception_ptr failure;
-  {
-    pipeline.start();
-    const std::jthread watch([&] {
-      try {
-        pipeline.wait();
-      } catch (...) {
-        failure = std::current_exception();
-        hub.drain("the mapping failed");
-      }
-    });
-    announce(options, hub, "Mapping " + options.source.spec);
-    hub.run();
-    pipeline.stop();
-  }
+  const std::exception_ptr failure =
+      serve_until_end(pipeline, hub, [&] { announce(options, hub, "Mapping " + options.source.spec); });
   if (store) {
     const StoreState saved = store->flush();
     if (!saved.ok && !failure) throw std::runtime_error(saved.problem);
