@@ -11,6 +11,12 @@
 
 namespace flogmap {
 
+/// A narrow range of azimuths: its middle as a unit vector, world, and the tangent of half its angle.
+struct AzimuthSpread {
+  Eigen::Vector2d direction;
+  double half_tangent = 0;
+};
+
 /// The circle is cut into four sectors around the camera's heading and across it; within a sector bins are
 /// even in the tangent, so that for a level camera every column of the picture is one bin, and its direction
 /// the bin's.
@@ -22,12 +28,20 @@ struct AzimuthBins {
 
   [[nodiscard]] int count() const { return 4 * per_sector; }
 
-  /// Unit vector of the middle of a bin, world.
-  [[nodiscard]] Eigen::Vector2d direction(int bin) const {
-    const double tangent = (bin % per_sector - middle) / per_tangent;
+  /// Unit vector of a bin, world: of its middle, or `aside` (-0.5 to 0.5, to the left) of its width beside
+  /// it.
+  [[nodiscard]] Eigen::Vector2d direction(int bin, double aside) const {
+    const double tangent = (bin % per_sector + aside - middle) / per_tangent;
     Eigen::Vector2d ahead = heading;
     for (int quarter = 0; quarter < bin / per_sector; ++quarter) ahead = left_of(ahead);
     return (ahead + tangent * left_of(ahead)).normalized();
+  }
+
+  /// From `first` to `last` of the width of a bin.
+  [[nodiscard]] AzimuthSpread spread(int bin, double first, double last) const {
+    const Eigen::Vector2d right = direction(bin, first), left = direction(bin, last);
+    const Eigen::Vector2d between = (left + right).normalized();
+    return {between, left.dot(left_of(between)) / left.dot(between)};
   }
 
   static Eigen::Vector2d left_of(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mapping/flog/fan_line.hpp"
+#include "mapping/flog/fan_shares.hpp"
 #include "mapping/flog/fan_sums.hpp"
 #include "mapping/flog/threads.hpp"
 
@@ -38,16 +39,19 @@ void FanIntegrator::integrate_bins(const SE3& world_from_camera, int first_bin, 
                                    ViewEvidence& evidence) const {
   const Eigen::Vector3d T = world_from_camera.translation();
   FanLine line;
+  FanShares shares;
   FanSums sums(grid_);
   for (int bin = first_bin; bin < end_bin; ++bin) {
     float end_m = 0;
     for (const FanRay* ray = rays_.begin(bin); ray != rays_.end(bin); ++ray)
       end_m = std::max(end_m, ray->end_m);
     if (end_m <= 0) continue;
-    line.walk(grid_, T.head<2>(), rays_.bins().direction(bin), end_m);
+    const AzimuthSpread spread = rays_.spread(bin);
+    line.walk(grid_, T.head<2>(), spread.direction, end_m);
     sums.start(line, T.z());
     for (const FanRay* ray = rays_.begin(bin); ray != rays_.end(bin); ++ray) sums.add(line, *ray);
-    sums.flush(line, evidence);
+    shares.share_out(grid_, T.head<2>(), spread, line);
+    sums.flush(line, shares, evidence);
   }
 }
 

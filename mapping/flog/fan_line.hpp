@@ -25,6 +25,7 @@ class FanLine {
 
   [[nodiscard]] int size() const { return static_cast<int>(cells_.size()); }
   [[nodiscard]] CellIndex cell(int j) const { return cells_[j]; }
+  [[nodiscard]] const CellIndex* cells() const { return cells_.data(); }
 
   /// rho of the point of the line within column j that is nearest to the column's axis; never falls with j.
   [[nodiscard]] float nearest_m(int j) const { return nearest_m_[j]; }

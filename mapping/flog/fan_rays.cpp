@@ -36,10 +36,10 @@ struct RowRays {
   explicit RowRays(int count) : hit_m(count), width_m(count), run_per_rise(count), end_m(count), bin(count) {}
 };
 
-/// Bins of the pixels of a row; kNoRay where the disparity is not a positive number.
+/// Bins of the pixels of a row, and where in their bins; kNoRay where the disparity is not a positive number.
 FLOGMAP_SIMD_CLONES
 void find_bins(const PixelRow& row, const RowConstants& k, const float* disparity_px, int step, int count,
-               std::uint16_t* bin) {
+               std::uint16_t* bin, std::uint8_t* part) {
   for (int i = 0; i < count; ++i) {
     const float x = static_cast<float>(i);
     const float forward = row.forward_0 + x * row.forward_x;
@@ -54,6 +54,7 @@ void find_bins(const PixelRow& row, const RowConstants& k, const float* disparit
     const int number = static_cast<int>(place) + static_cast<int>(quarter * k.per_sector);
     const float d = disparity_px[i * step];
     bin[i] = static_cast<std::uint16_t>(d > 1e-6F && d < 1e9F ? number : int{kNoRay});
+    part[i] = static_cast<std::uint8_t>((place - static_cast<float>(static_cast<int>(place))) * 256.0F);
   }
 }
 
@@ -119,6 +120,17 @@ RowConstants row_constants(const RayModel& model, const AzimuthBins& bins) {
 
 }  // namespace
 
+AzimuthSpread FanRays::spread(int bin) const {
+  const AzimuthRange& range = range_.front()[bin];
+  // Less than this much is rounding: all rays of the bin lie on one line, as those of a level camera do.
+  constexpr int kOneLine = 4;
+  constexpr double kPart = 1.0 / 256;
+  const double first = range.least * kPart - 0.5, last = (range.greatest + 1) * kPart - 0.5;
+  AzimuthSpread spread = bins_.spread(bin, first, last);
+  if (range.greatest - range.least <= kOneLine) spread.half_tangent = 0;
+  return spread;
+}
+
 void FanRays::start_bins() {
   std::uint32_t next = 0;
   for (int bin = 0; bin < bins_.count(); ++bin) {
@@ -126,6 +138,11 @@ void FanRays::start_bins() {
     for (auto& counts : place_) next += std::exchange(counts[bin], next);
   }
   begin_.back() = next;
+  for (std::size_t thread = 1; thread < range_.size(); ++thread) {
+    for (int bin = 0; bin < bins_.count(); ++bin) {
+      range_.front()[bin].join(range_[thread][bin]);
+    }
+  }
   if (rays_.size() < next) rays_.resize(next);
 }
 
@@ -136,16 +153,20 @@ void FanRays::sort(const RayModel& model, const View& view, int num_threads) {
   const int num_rows = (d.height + model.row_step - 1) / model.row_step;
   const int num_columns = (d.width + model.column_step - 1) / model.column_step;
   place_.assign(num_threads, std::vector<std::uint32_t>(bins_.count(), 0));
+  range_.assign(num_threads, std::vector<AzimuthRange>(bins_.count()));
   begin_.assign(bins_.count() + 1, 0);
   std::vector<std::uint16_t> bin_of(std::size_t(num_rows) * num_columns);
 
-  const auto count_rays = [&](int row, std::vector<std::uint32_t>& counts) {
+  const auto count_rays = [&](int row, std::vector<std::uint32_t>& counts, std::vector<AzimuthRange>& range,
+                              std::vector<std::uint8_t>& part) {
     const int y = row * model.row_step;
     std::uint16_t* bin = bin_of.data() + std::size_t(row) * num_columns;
     find_bins(pixel_row(model, view.world_from_camera, bins_.heading, y), constants, d.row(y),
-              model.column_step, num_columns, bin);
+              model.column_step, num_columns, bin, part.data());
     for (int i = 0; i < num_columns; ++i) {
-      if (bin[i] != kNoRay) ++counts[bin[i]];
+      if (bin[i] == kNoRay) continue;
+      ++counts[bin[i]];
+      range[bin[i]].join({part[i], part[i]});
     }
   };
   const auto place_rays = [&](int row, std::vector<std::uint32_t>& place, RowRays& rays) {
@@ -162,7 +183,8 @@ void FanRays::sort(const RayModel& model, const View& view, int num_threads) {
   std::barrier counted(num_threads, [this]() noexcept { start_bins(); });
   run_on_threads(num_threads, [&](int thread) {
     const int first = num_rows * thread / num_threads, last = num_rows * (thread + 1) / num_threads;
-    for (int row = first; row < last; ++row) count_rays(row, place_[thread]);
+    std::vector<std::uint8_t> part(num_columns);
+    for (int row = first; row < last; ++row) count_rays(row, place_[thread], range_[thread], part);
     counted.arrive_and_wait();
     RowRays rays(num_columns);
     for (int row = first; row < last; ++row) place_rays(row, place_[thread], rays);

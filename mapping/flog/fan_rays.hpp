@@ -1,6 +1,7 @@
 // The rays of a view, seen from above and sorted by azimuth. FLOG.md section 7, point 1.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,16 @@ struct FanRay {
   float end_m = 0;         // the ray touches [0, end_m)
 };
 
+/// Azimuths within a bin, in 256ths of its width.
+struct AzimuthRange {
+  std::uint8_t least = 255, greatest = 0;
+
+  void join(const AzimuthRange& other) {
+    least = std::min(least, other.least);
+    greatest = std::max(greatest, other.greatest);
+  }
+};
+
 /// All rays of a view in one array, bin after bin. The memory is kept from view to view.
 class FanRays {
  public:
@@ -26,6 +37,9 @@ class FanRays {
   void sort(const RayModel& model, const View& view, int num_threads);
 
   [[nodiscard]] const AzimuthBins& bins() const { return bins_; }
+
+  /// The azimuths that the rays of a bin really have: the fan's line goes through their middle.
+  [[nodiscard]] AzimuthSpread spread(int bin) const;
   [[nodiscard]] const FanRay* begin(int bin) const { return rays_.data() + begin_[bin]; }
   [[nodiscard]] const FanRay* end(int bin) const { return rays_.data() + begin_[bin + 1]; }
   [[nodiscard]] std::uint32_t size() const { return begin_.back(); }
@@ -37,7 +51,8 @@ class FanRays {
   AzimuthBins bins_;
   std::vector<std::uint32_t> begin_;  // where each bin starts; one more than there are bins
   std::vector<std::vector<std::uint32_t>>
-      place_;  // per thread and bin: a count, then where the next ray goes
+      place_;                                     // per thread and bin: a count, then where the next ray goes
+  std::vector<std::vector<AzimuthRange>> range_;  // per thread and bin; after sorting the first holds all
   std::vector<FanRay> rays_;
 };
 

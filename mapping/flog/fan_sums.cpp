@@ -110,14 +110,17 @@ void FanSums::add_hit(const FanLine& line, const Ramps& ramps, Layer& layer, int
   changes[end].passed -= kOne;
 }
 
-/// What the rays over column j say of one cell, from whole numbers that are exact.
-inline void FanSums::add_cell(Layer& layer, int j, float rho_m, EvidenceSum& sum) {
+/// From whole numbers that are exact.
+inline FanSums::Bundle FanSums::take_bundle(Layer& layer, int j, float rho_m) {
+  layer.rays += std::exchange(layer.counts[j], 0);
+  const auto rays = static_cast<std::uint64_t>(layer.rays);
+  if (j < layer.first_change || j > layer.last_change) return {rays, rays * kEvidenceOne, 0};
   Change& ramps = layer.ramps;
   Change& change = layer.changes[j];
   ramps.met += change.met, ramps.met_slope += change.met_slope;
   ramps.passed += change.passed, ramps.passed_slope += change.passed_slope;
   change = Change{};
-  if (layer.rays == 0) return;
+  if (rays == 0) return {};
   constexpr double kUnit = static_cast<double>(kEvidenceOne) / static_cast<double>(kOne);
   const double rho = rho_m, all = static_cast<double>(layer.rays) * kEvidenceOne;
   const auto value = [&](std::int64_t constant, std::int64_t slope) {
@@ -125,32 +128,40 @@ inline void FanSums::add_cell(Layer& layer, int j, float rho_m, EvidenceSum& sum
   };
   const double met = std::clamp(value(ramps.met, ramps.met_slope), 0.0, all);
   const double passed = std::clamp(value(ramps.passed, ramps.passed_slope), 0.0, met);
-  const auto met_sum = static_cast<std::int64_t>(met + 0.5),
-             passed_sum = static_cast<std::int64_t>(passed + 0.5);
-  sum.add(layer.rays, layer.rays * std::int64_t{kEvidenceOne} - met_sum, met_sum - passed_sum);
+  const auto met_sum = static_cast<std::uint64_t>(met + 0.5),
+             passed_sum = static_cast<std::uint64_t>(passed + 0.5);
+  return {rays, rays * kEvidenceOne - met_sum, met_sum - passed_sum};
 }
 
-void FanSums::flush(const FanLine& line, ViewEvidence& evidence) {
+inline void FanSums::give(const Bundle& bundle, int share, EvidenceSum& sum) {
+  if (share == int{kWholeShare}) {
+    sum.add(bundle.rays, bundle.empty, bundle.occupied);
+  } else {
+    sum.add_share(share, bundle.rays, bundle.empty, bundle.occupied);
+  }
+}
+
+void FanSums::flush(const FanLine& line, const FanShares& shares, ViewEvidence& evidence) {
   for (Layer& layer : layers_) {
     layer.rays = 0;
     layer.ramps = Change{};
   }
-  EvidenceSum nobody;
-  for (int j = 0; j < line.size(); ++j) {
-    EvidenceSum* cells = nullptr;
+  const auto give_to = [&](CellIndex cell, int share) {
+    EvidenceSum* sums = evidence.column(cell);
+    for (std::size_t k = 0; k < layers_.size(); ++k) give(bundles_[k], share, sums[k]);
+  };
+  FanShare share, before;
+  for (int j = 0; j < line.size(); ++j, before = share) {
+    std::uint64_t rays = 0;
     for (std::size_t k = 0; k < layers_.size(); ++k) {
-      Layer& layer = layers_[k];
-      layer.rays += std::exchange(layer.counts[j], 0);
-      const bool ramps = j >= layer.first_change && j <= layer.last_change;
-      if (layer.rays == 0 && !ramps) continue;
-      if (layer.rays != 0 && cells == nullptr) cells = evidence.column(line.cell(j));
-      if (ramps) {
-        add_cell(layer, j, line.nearest_m(j), cells == nullptr ? nobody : cells[k]);
-      } else {
-        cells[k].rays_and_empty +=
-            static_cast<std::uint64_t>(layer.rays) * ((std::uint64_t{1} << 40U) + kEvidenceOne);
-      }
+      bundles_[k] = take_bundle(layers_[k], j, line.nearest_m(j));
+      rays += bundles_[k].rays;
     }
+    if (shares.any()) share = shares.at(j);
+    if (rays == 0) continue;
+    give_to(line.cell(j), share.own);
+    if (share.counter != 0) give_to(shares.counter_of(line.cell(j)), share.counter);
+    if (before.drift != 0) give_to(shares.drift_of(line.cell(j - 1)), before.drift);
   }
   for (Layer& layer : layers_) {
     layer.counts[line.size()] = 0;

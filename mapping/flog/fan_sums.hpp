@@ -6,6 +6,7 @@
 
 #include "mapping/flog/fan_line.hpp"
 #include "mapping/flog/fan_rays.hpp"
+#include "mapping/flog/fan_shares.hpp"
 #include "mapping/flog/view_evidence.hpp"
 
 namespace flogmap {
@@ -16,15 +17,16 @@ namespace flogmap {
 /// ends. Everything is kept in whole numbers: no order of the rays changes a bit.
 class FanSums {
  public:
-  explicit FanSums(const GridSpec& grid) : grid_(grid), layers_(grid.num_layers()) {}
+  explicit FanSums(const GridSpec& grid)
+      : grid_(grid), layers_(grid.num_layers()), bundles_(grid.num_layers()) {}
 
   /// Starts a line of columns; heights are seen from a camera at camera_z_m.
   void start(const FanLine& line, double camera_z_m);
 
   void add(const FanLine& line, const FanRay& ray);
 
-  /// Adds the sums to the evidence of the line's cells and forgets them.
-  void flush(const FanLine& line, ViewEvidence& evidence);
+  /// Adds the sums to the evidence of the line's cells, and of those beside it, and forgets them.
+  void flush(const FanLine& line, const FanShares& shares, ViewEvidence& evidence);
 
  private:
   /// How the ramps change at a column: constants, and slopes per metre of rho.
@@ -47,11 +49,17 @@ class FanSums {
   void add_stretch(const FanLine& line, const Ramps& ramps, Layer& layer, float from_m, float to_m) const;
   void add_hit(const FanLine& line, const Ramps& ramps, Layer& layer, int first, int last, float from_m,
                float to_m) const;
-  static void add_cell(Layer& layer, int j, float rho_m, EvidenceSum& sum);
+  /// What the rays over one column say of one layer.
+  struct Bundle {
+    std::uint64_t rays = 0, empty = 0, occupied = 0;
+  };
+  static Bundle take_bundle(Layer& layer, int j, float rho_m);
+  static void give(const Bundle& bundle, int share, EvidenceSum& sum);
 
   const GridSpec& grid_;
   std::vector<float> bounds_m_;  // heights of the layers' bounds above the camera
   std::vector<Layer> layers_;
+  std::vector<Bundle> bundles_;  // of one column, while the sums are given away
 };
 
 }  // namespace flogmap

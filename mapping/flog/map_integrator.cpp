@@ -78,7 +78,7 @@ std::vector<TileUpdate> MapIntegrator::integrate(const View& view) {
 
 void MapIntegrator::gather(const View& view) {
   const Eigen::Vector3d T = view.world_from_camera.translation();
-  const double reach = reach_m(model_) + options_.grid.cell_size_m;
+  const double reach = reach_m(model_) + 2 * options_.grid.cell_size_m;
   for (ViewEvidence& evidence : evidence_) {
     evidence.start(cell_at(options_.grid, T.x() - reach, T.y() - reach),
                    cell_at(options_.grid, T.x() + reach, T.y() + reach));
@@ -124,8 +124,10 @@ std::shared_ptr<const Tile> MapIntegrator::merged(TileIndex index, std::uint64_t
     for (int k = 0; k < num_layers; ++k, ++i) {
       EvidenceSum sum;
       for (const EvidenceSum* part : parts) sum += part[i];
-      if (sum.rays_and_empty == 0) continue;
-      mergers_[k].merge(tile->cells[std::size_t(k) * kTileColumns + column], sum.evidence());
+      if (sum.empty()) continue;
+      const CellEvidence evidence = sum.evidence();
+      if (evidence.rays == 0) continue;  // less than half a ray
+      mergers_[k].merge(tile->cells[std::size_t(k) * kTileColumns + column], evidence);
     }
   }
   return tile;

@@ -14,25 +14,40 @@ namespace flogmap {
 /// Memberships are counted in units of 1/65536 here.
 inline constexpr std::uint64_t kEvidenceOne = 1U << 16U;
 
+/// A bundle of rays may be shared out between neighbouring cells, in parts of 1/64.
+inline constexpr std::uint64_t kWholeShare = 64;
+
 /// Sums of one cell; two words, so that one 128-bit addition adds a ray or a whole bundle of them.
 struct EvidenceSum {
-  std::uint64_t rays_and_empty = 0;  // n in the upper 24 bits, sum of mu_E * 65536 in the lower 40
-  std::uint64_t occupied = 0;        // sum of mu_O * 65536
+  std::uint64_t rays_and_empty = 0;  // whole rays in the upper 24 bits, sum of mu_E * 65536 in the lower 40
+  std::uint64_t parts_and_occupied = 0;  // 64ths of rays in the upper 24 bits, sum of mu_O * 65536 below
 
-  void add(std::uint64_t rays, std::uint64_t empty, std::uint64_t occupied_sum) {
+  void add(std::uint64_t rays, std::uint64_t empty, std::uint64_t occupied) {
     rays_and_empty += (rays << 40U) + empty;
-    occupied += occupied_sum;
+    parts_and_occupied += occupied;
+  }
+  /// Only share/64 of a bundle. At most 2^18 times a view, or the 64ths could overflow.
+  void add_share(std::uint64_t share, std::uint64_t rays, std::uint64_t empty, std::uint64_t occupied) {
+    const std::uint64_t parts = rays * share;
+    rays_and_empty += (parts / kWholeShare << 40U) + empty * share / kWholeShare;
+    parts_and_occupied += (parts % kWholeShare << 40U) + occupied * share / kWholeShare;
   }
   EvidenceSum& operator+=(const EvidenceSum& other) {
     rays_and_empty += other.rays_and_empty;
-    occupied += other.occupied;
+    parts_and_occupied += other.parts_and_occupied;
     return *this;
   }
+  [[nodiscard]] bool empty() const { return rays_and_empty == 0 && parts_and_occupied == 0; }
+
+  /// The number of rays is rounded; the means of their memberships are kept.
   [[nodiscard]] CellEvidence evidence() const {
-    constexpr double kUnit = 1.0 / kEvidenceOne;
-    const std::uint64_t empty = rays_and_empty & ((std::uint64_t{1} << 40U) - 1);
-    return {static_cast<std::uint32_t>(rays_and_empty >> 40U), static_cast<double>(empty) * kUnit,
-            static_cast<double>(occupied) * kUnit};
+    const std::uint64_t low = (std::uint64_t{1} << 40U) - 1;
+    const std::uint64_t parts = (rays_and_empty >> 40U) * kWholeShare + (parts_and_occupied >> 40U);
+    const std::uint64_t rays = (parts + kWholeShare / 2) / kWholeShare;
+    if (rays == 0) return {};
+    const double unit = static_cast<double>(rays * kWholeShare) / static_cast<double>(parts) / kEvidenceOne;
+    return {static_cast<std::uint32_t>(rays), static_cast<double>(rays_and_empty & low) * unit,
+            static_cast<double>(parts_and_occupied & low) * unit};
   }
 };
 
