@@ -11,10 +11,10 @@ namespace {
 /// The wedge over the grid, in cells: its line starts at (x, y) of the first cell and goes along (ux, uy).
 struct Wedge {
   CellIndex first;
-  float x, y;             // [0, 1)
-  float ux, uy;           // unit vector
-  float half;             // tangent of half the angle
-  float drift_x, drift_y; // the step across the main axis towards which the line drifts
+  float x, y;              // [0, 1)
+  float ux, uy;            // unit vector
+  float half;              // tangent of half the angle
+  float drift_x, drift_y;  // the step across the main axis towards which the line drifts
 };
 
 /// Tangent of the angle between the line and a corner seen from the start, positive on the drift's side;
@@ -30,8 +30,8 @@ inline float part_of(const Wedge& wedge, float from, float to) {
   return std::max(width, 0.0F) / (2 * wedge.half) * static_cast<float>(kWholeShare) + 0.5F;
 }
 
-/// The rays that cross a column pass between two of its corners: the one farthest to the drift's side of the line
-/// and the opposite one.
+/// The rays that cross a column pass between two of its corners: the one farthest to the drift's side of the
+/// line and the opposite one.
 FLOGMAP_SIMD_CLONES
 void find_shares(const Wedge& wedge, const CellIndex* cells, int count, FanShare* shares) {
   const float side = wedge.ux * wedge.drift_y - wedge.uy * wedge.drift_x > 0 ? 1.0F : -1.0F;

@@ -1,5 +1,5 @@
-// How the rays of a bin share the columns beside its line: the bin is a narrow wedge, and a corner of a column may
-// lie inside it.
+// How the rays of a bin share the columns beside its line: the bin is a narrow wedge, and a corner of a
+// column may lie inside it.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,10 @@
 
 namespace flogmap {
 
-/// Of the rays over column j of a line, in 64ths: how many cross that very column, and how many cross those of
-/// its two neighbours across the main axis that the line itself does not meet. The line drifts towards one of
-/// them, which the rays enter late, about where the line comes to column j + 1; they leave the other one early.
+/// Of the rays over column j of a line, in 64ths: how many cross that very column, and how many cross those
+/// of its two neighbours across the main axis that the line itself does not meet. The line drifts towards one
+/// of them, which the rays enter late, about where the line comes to column j + 1; they leave the other one
+/// early.
 struct FanShare {
   std::uint8_t own = kWholeShare;
   std::uint8_t drift = 0;    // the neighbour the line drifts towards

@@ -119,7 +119,7 @@ ReachableArea find_reachable(const MapSnapshot& map, const RouteRequest& request
   if (map.tiles.empty()) return {RouteOutcome::start_unknown, "the map is empty", {}, 0};
   const Ground ground = ground_of(map, request);
   const auto start =
-      snapped(ground.grid, ground.place(request.from_m), request.snap_m / map.info.grid.cell_size_m);
+      snapped(ground.grid, ground.place(request.from_m), request.start_snap_m / map.info.grid.cell_size_m);
   if (!start) {
     const RouteResult why = no_place(ground, ground.place(request.from_m), true);
     return {why.outcome, why.reason, {}, 0};
@@ -134,10 +134,10 @@ ReachableArea find_reachable(const MapSnapshot& map, const RouteRequest& request
 RouteResult find_route(const MapSnapshot& map, const RouteRequest& request) {
   if (map.tiles.empty()) return no_way(RouteOutcome::start_unknown, "the map is empty");
   const Ground ground = ground_of(map, request);
-  const double reach = request.snap_m / map.info.grid.cell_size_m;
-  const auto from = snapped(ground.grid, ground.place(request.from_m), reach);
+  const double a = map.info.grid.cell_size_m;
+  const auto from = snapped(ground.grid, ground.place(request.from_m), request.start_snap_m / a);
   if (!from) return no_place(ground, ground.place(request.from_m), true);
-  const auto to = snapped(ground.grid, ground.place(request.to_m), reach);
+  const auto to = snapped(ground.grid, ground.place(request.to_m), request.goal_snap_m / a);
   if (!to) return no_place(ground, ground.place(request.to_m), false);
   const std::vector<GridPlace> way = cheapest_way(ground.grid, *from, *to);
   if (way.empty()) {

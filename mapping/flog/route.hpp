@@ -18,8 +18,9 @@ struct RouteRequest {
   double robot_radius_m = 0.2;
   HeightRange heights;  // layers that must be free
   Operators operators = Operators::algebraic;
-  double snap_m =
-      0.3;  // an end where the robot does not fit moves to the nearest place within this, where it does
+  // An end where the robot does not fit moves to the nearest place within this, where it does.
+  double start_snap_m = 0.3;
+  double goal_snap_m = 0.3;
 };
 
 enum class RouteOutcome : std::uint8_t {

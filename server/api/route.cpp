@@ -1,5 +1,6 @@
 // POST /maps/{id}/route {from, to, robot_radius_m, robot_height_m}: a path on the safe-for-motion map.
 // POST /maps/{id}/reachable {from, robot_radius_m, robot_height_m}: everywhere that such paths lead.
+// `from` is [x, y] or the word "camera".
 #include "mapping/flog/route.hpp"
 
 #include <optional>
@@ -24,7 +25,10 @@ Eigen::Vector2d point_field(const nlohmann::json& body, const char* name) {
                      point["x"].is_number() && point["y"].is_number();
   if (pair) return {point[0].get<double>(), point[1].get<double>()};
   if (named) return {point["x"].get<double>(), point["y"].get<double>()};
-  throw RefusedRequest(422, "bad-value", std::string(name) + " must be [x, y] in metres", name);
+  throw RefusedRequest(422, "bad-value",
+                       std::string(name) + " must be [x, y] in metres" +
+                           (name == std::string_view("from") ? ", or \"camera\"" : ""),
+                       name);
 }
 
 /// A length of the robot; nothing if the body does not name it.
@@ -41,10 +45,19 @@ Eigen::Vector2d place_field(const nlohmann::json& body, const char* name, const 
   throw RefusedRequest(422, "bad-value", "no cell lies so far out", name);
 }
 
+/// Where the camera is now.
+Eigen::Vector2d camera_place(const ServedMap& map) {
+  if (!map.trajectory().empty()) return map.trajectory().back().world_from_camera.translation().head<2>();
+  throw RefusedRequest(422, "no-camera", "the camera has no place on this map yet; give from as [x, y]",
+                       "from");
+}
+
 /// All but where the robot wants to go.
-RouteRequest requested_start(const nlohmann::json& body, const ServeOptions& options, const MapInfo& info) {
+RouteRequest requested_start(const nlohmann::json& body, const ServeOptions& options, const ServedMap& map) {
   RouteRequest route;
-  route.from_m = place_field(body, "from", info);
+  const bool from_camera = body.contains("from") && body["from"] == "camera";
+  route.from_m = from_camera ? camera_place(map) : place_field(body, "from", map.board().info());
+  if (from_camera) route.start_snap_m = kFromCameraM;
   route.robot_radius_m = robot_field(body, "robot_radius_m").value_or(options.robot.radius_m);
   const double height_m = robot_field(body, "robot_height_m").value_or(options.robot.height_m);
   if (height_m > 0) route.heights = {0, height_m};
@@ -87,7 +100,7 @@ ApiResponse answer_of(const MapSnapshot& map, const RouteRequest& request, const
 ApiAnswer post_route(const ApiRequest& request, ServerState& state) {
   ServedMap& map = requested_map(request, state);
   const nlohmann::json body = json_body(request);
-  RouteRequest route = requested_start(body, state.options, map.board().info());
+  RouteRequest route = requested_start(body, state.options, map);
   route.to_m = place_field(body, "to", map.board().info());
   return ApiJob(
       [snapshot = map.snapshot(), route, epoch = map.epoch()] { return answer_of(*snapshot, route, epoch); });
@@ -128,8 +141,8 @@ ApiResponse reachable_answer(const MapSnapshot& map, const RouteRequest& request
 
 ApiAnswer post_reachable(const ApiRequest& request, ServerState& state) {
   ServedMap& map = requested_map(request, state);
-  RouteRequest start = requested_start(json_body(request), state.options, map.board().info());
-  start.snap_m = kFromCameraM;
+  RouteRequest start = requested_start(json_body(request), state.options, map);
+  start.start_snap_m = kFromCameraM;
   return ApiJob([snapshot = map.snapshot(), start, epoch = map.epoch()] {
     return reachable_answer(*snapshot, start, epoch);
   });

@@ -106,8 +106,7 @@ async function reachAhead(robot: Record<string, number>): Promise<Reach> {
 }
 
 /** Two places far apart between which a slim robot can go, by the server's own account. */
-async function endsOfAWay(page: Page, robot: Record<string, number>): Promise<[number, number][]> {
-  const reach = await reachAhead(robot);
+async function endsOfAWay(page: Page, reach: Reach): Promise<[number, number][]> {
   const reached: [number, number][] = [];
   let at = 0;
   reach.runs.forEach((length, i) => {
@@ -130,8 +129,9 @@ test('a route is found by two clicks, and where the robot gets to shrinks as it 
   await page.keyboard.press('r');
   await setSlider(page, 'Robot radius', 0.1);
   await setSlider(page, 'Robot height', 0.7);
+  await page.getByRole('switch', { name: 'Start at the camera' }).click();
   const words = page.locator('.robot-words');
-  for (const [x, y] of await endsOfAWay(page, { robot_radius_m: 0.15, robot_height_m: 0.7 })) await page.locator('.map > canvas').click({ position: await project(page, x, y) });
+  for (const [x, y] of await endsOfAWay(page, await reachAhead({ robot_radius_m: 0.15, robot_height_m: 0.7 }))) await page.locator('.map > canvas').click({ position: await project(page, x, y) });
   await expect(words).toHaveText(/Route: \d+\.\d\d m, least clearance \d\.\d\d m/);
   await expect(page.locator('.route-line')).toHaveCount(1);
   await page.getByRole('switch', { name: 'Show where it can get to' }).click();
@@ -141,6 +141,22 @@ test('a route is found by two clicks, and where the robot gets to shrinks as it 
   expect(slim).toBeGreaterThan(0.3);
   await setSlider(page, 'Robot radius', 0.3);
   await expect.poll(async () => { const now = await area(); return Number.isNaN(now) || now < slim; }).toBe(true);
+});
+
+test('a route from the camera takes one click', async ({ page }) => {
+  await open(page, `${program.url}/?fresh`);
+  await settled(page);
+  await page.locator('.map > canvas').focus();
+  await page.keyboard.press('r');
+  await setSlider(page, 'Robot radius', 0.1);
+  await setSlider(page, 'Robot height', 0.7);
+  const words = page.locator('.robot-words');
+  await expect(words).toHaveText(/click where to go/);
+  const asked = { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ from: 'camera', robot_radius_m: 0.15, robot_height_m: 0.7 }) };
+  const [, [x, y] = [0, 0]] = await endsOfAWay(page, await program.json<Reach>('maps/live/reachable', asked));
+  await page.locator('.map > canvas').click({ position: await project(page, x, y) });
+  await expect(words).toHaveText(/Route: \d+\.\d\d m, least clearance \d\.\d\d m/);
+  await expect(page.locator('.route-line')).toHaveCount(1);
 });
 
 test('measuring an area', async ({ page }) => {

@@ -44,8 +44,9 @@ export interface Backend {
   reset(): Promise<void>;
   changePlayback(change: PlaybackChange): Promise<void>;
   step(): Promise<void>;
-  route(from: Spot, to: Spot, robot: Robot): Promise<Route>;
-  reach(from: Spot, robot: Robot): Promise<Reach>;
+  /** From a spot, or from where the camera is now. */
+  route(from: Spot | undefined, to: Spot, robot: Robot): Promise<Route>;
+  reach(from: Spot | undefined, robot: Robot): Promise<Reach>;
   views(): Promise<ViewList>;
   viewMesh(number: number): Promise<ArrayBuffer>;
   /** Addresses to open or copy; undefined where there is no such server. */
@@ -81,8 +82,8 @@ export function restBackend(base: string, ask: Fetch = (input, init) => fetch(in
     reset: () => post('session:reset'),
     step: () => post('playback:step'),
     changePlayback: async (change) => void (await send('PATCH', 'playback', change)),
-    route: async (from, to, robot) => routeFrom(await send('POST', 'maps/live/route', { from: [from.x, from.y], to: [to.x, to.y], ...sizeOf(robot) })),
-    reach: async (from, robot) => reachFrom(await send('POST', 'maps/live/reachable', { from: [from.x, from.y], ...sizeOf(robot) })),
+    route: async (from, to, robot) => routeFrom(await send('POST', 'maps/live/route', { from: startOf(from), to: [to.x, to.y], ...sizeOf(robot) })),
+    reach: async (from, robot) => reachFrom(await send('POST', 'maps/live/reachable', { from: startOf(from), ...sizeOf(robot) })),
     views: async () => viewsFrom(await send('GET', 'maps/live/views')),
     viewMesh: async (number) => {
       const response = await ask(`${base}maps/live/views/${number}.glb`);
@@ -97,6 +98,10 @@ export function restBackend(base: string, ask: Fetch = (input, init) => fetch(in
 function wordsOf(problem: unknown): string | undefined {
   const { detail, title } = (problem ?? {}) as { detail?: unknown; title?: unknown };
   return typeof detail === 'string' && detail ? detail : typeof title === 'string' ? title : undefined;
+}
+
+function startOf(from: Spot | undefined): number[] | 'camera' {
+  return from ? [from.x, from.y] : 'camera';
 }
 
 function routeFrom(answer: unknown): Route {

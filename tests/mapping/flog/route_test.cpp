@@ -22,7 +22,7 @@ RouteRequest way(double x0, double y0, double x1, double y1, double radius_m = 0
   request.from_m = {x0, y0};
   request.to_m = {x1, y1};
   request.robot_radius_m = radius_m;
-  request.snap_m = 0.05;
+  request.start_snap_m = request.goal_snap_m = 0.05;
   return request;
 }
 

@@ -15,6 +15,7 @@ export class RobotTool {
   route: Route | undefined;
   private reach: Reach | undefined;
   private reachWanted = false;
+  private fromCamera = true;
   private trouble = '';
   private askedAt = 0;
   private timer = 0;
@@ -24,8 +25,10 @@ export class RobotTool {
     const { settings } = page;
     const radius = slider('Robot radius', { min: 0.05, max: 1, step: 0.05 }, (value) => `${value.toFixed(2)} m`, (robotRadius) => settings.set({ robotRadius }));
     const height = slider('Robot height', { min: 0, max: 2.5, step: 0.05 }, (value) => (value === 0 ? 'all layers' : `${value.toFixed(2)} m`), (robotHeight) => settings.set({ robotHeight }));
+    const camera = toggle('Start at the camera', (on) => this.startAtCamera(on), 'The first click says where to go; otherwise it says where to start');
     const reachable = toggle('Show where it can get to', (on) => this.wantReach(on), 'From the start of the route, or else from the camera');
-    this.element = h('div', { class: 'robot-tool' }, this.words, radius.element, height.element, reachable.element);
+    this.element = h('div', { class: 'robot-tool' }, this.words, camera.element, radius.element, height.element, reachable.element);
+    camera.show(true);
     reachable.show(false);
     settings.watch(['robotRadius', 'robotHeight'], (now) => {
       radius.show(now.robotRadius);
@@ -37,13 +40,14 @@ export class RobotTool {
   }
 
   click(world: Point): void {
-    if (!this.from || this.to) Object.assign(this, { from: world, to: undefined, route: undefined, trouble: '' });
+    if (this.fromCamera) this.to = world;
+    else if (!this.from || this.to) Object.assign(this, { from: world, to: undefined, route: undefined, trouble: '' });
     else this.to = world;
     void this.ask(true);
   }
 
   back(): boolean {
-    const had = this.from !== undefined;
+    const had = (this.from ?? this.to) !== undefined;
     Object.assign(this, this.to ? { to: undefined, route: undefined } : { from: undefined });
     this.show();
     return had;
@@ -65,7 +69,13 @@ export class RobotTool {
     const area = this.reachWanted && this.reach ? ` Reaches ${this.reach.areaM2.toFixed(1)} m².` : '';
     if (this.trouble) return `${this.trouble}${area}`;
     if (this.route) return `Route: ${this.route.lengthM.toFixed(2)} m, least clearance ${this.route.clearanceM.toFixed(2)} m.${area}`;
-    return `${this.from ? 'Route: click where to go.' : 'Route: click where to start.'}${area}`;
+    return `${this.from || this.fromCamera ? 'Route: click where to go.' : 'Route: click where to start.'}${area}`;
+  }
+
+  private startAtCamera(on: boolean): void {
+    this.fromCamera = on;
+    this.clear();
+    void this.ask(true);
   }
 
   private wantReach(on: boolean): void {
@@ -88,9 +98,8 @@ export class RobotTool {
     const { robotRadius, robotHeight } = this.page.settings.get();
     const robot = { radiusM: robotRadius, heightM: robotHeight };
     const { from, to } = this;
-    if (from && to) await this.askRoute(this.page.backend.route(from, to, robot), to);
-    const start = from ?? this.page.live.pose?.pose ?? this.page.live.trajectory.at(-1)?.pose;
-    if (this.reachWanted && start) await this.page.backend.reach(start, robot).then((reach) => (this.reach = reach), (error: unknown) => this.failed(aloud, error, () => (this.reach = undefined)));
+    if (to && (from || this.fromCamera)) await this.askRoute(this.page.backend.route(from, to, robot), to);
+    if (this.reachWanted) await this.page.backend.reach(from, robot).then((reach) => (this.reach = reach), (error: unknown) => this.failed(aloud, error, () => (this.reach = undefined)));
     this.show();
   }
 
