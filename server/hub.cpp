@@ -11,9 +11,11 @@
 #include "server/access.hpp"
 #include "server/http_app.hpp"
 #include "server/listener.hpp"
+#include "server/log.hpp"
 #include "server/mailbox.hpp"
 #include "server/picture_service.hpp"
 #include "server/server_state.hpp"
+#include "server/session_events.hpp"
 #include "server/viewers.hpp"
 
 namespace flogmap {
@@ -88,6 +90,7 @@ class Hub::Network {
   Listener listener_;
   net::signal_set signals_;
   net::steady_timer drain_timer_, status_timer_;
+  SessionEvents events_;
 };
 
 Hub::Hub(const ServeOptions& options, SessionControl& control, HubInfo info)
@@ -175,7 +178,7 @@ void Hub::Network::update(const Mailbox::Contents& contents) {
     viewers_.trajectory_rewritten(contents.rewrite->reason);
   }
   for (const TrajectoryEntry& entry : contents.appended) map.append(entry);
-  for (const SharedView& view : contents.views) map.views().add(view);
+  for (const SharedView& view : contents.views) map.add(view);
 }
 
 void Hub::Network::take_reports(Mailbox::Contents& contents) {
@@ -195,6 +198,8 @@ void Hub::Network::take_reports(Mailbox::Contents& contents) {
 void Hub::Network::drain(const std::string& reason) {
   if (state_.draining) return;
   state_.draining = true;
+  log_event(LogLevel::info, "shutting down",
+            {{"reason", reason}, {"viewers", static_cast<std::int64_t>(viewers_.size())}});
   viewers_.dismiss_all(reason);
   end_when_drained(steady_clock::now() + kDrainDeadline);
 }
@@ -209,6 +214,7 @@ void Hub::Network::end_when_drained(steady_clock::time_point deadline) {
 
 /// The session may change without a report of the mapping: pages hear of it all the same.
 void Hub::Network::repeat_status() {
+  events_.look_at(state_);
   viewers_.status_changed();
   pictures_.offer();
   viewers_.pump_all();

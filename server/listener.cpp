@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "server/http_session.hpp"
+#include "server/log.hpp"
 #include "server/response_head.hpp"
 
 namespace flogmap {
@@ -20,6 +21,8 @@ using boost::system::error_code;
 using tcp = net::ip::tcp;
 
 namespace {
+
+constexpr std::chrono::seconds kComplainEvery{10};
 
 net::ssl::context tls_context(const ServeOptions& options) {
   net::ssl::context tls(net::ssl::context::tls_server);
@@ -96,7 +99,7 @@ void Listener::welcome(tcp::socket socket) {
   if (error) return;  // gone already
   Peer peer{plain_address(remote.address()), plain_address(local.address()), nullptr};
   peer.ticket = limit_.admit(peer.remote_address);
-  if (!peer.ticket) return turn_away(std::move(socket));
+  if (!peer.ticket) return turn_away(std::move(socket), peer.remote_address);
   socket.set_option(tcp::no_delay(true), error);
   PlainStream stream(std::move(socket));
   if (tls_) {
@@ -107,8 +110,14 @@ void Listener::welcome(tcp::socket socket) {
   }
 }
 
-void Listener::turn_away(tcp::socket socket) {
+void Listener::turn_away(tcp::socket socket, const std::string& remote_address) {
   context_.state.metrics.count_refused_connection();
+  const auto now = std::chrono::steady_clock::now();
+  if (now - complained_at_ > kComplainEvery) {
+    complained_at_ = now;
+    log_event(LogLevel::warning, "connections are turned away",
+              {{"remote", remote_address}, {"open", std::int64_t{limit_.num_open()}}});
+  }
   if (tls_) return;
   auto message = std::make_shared<const std::string>(refused_connection());
   auto held = std::make_shared<tcp::socket>(std::move(socket));

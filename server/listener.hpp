@@ -4,6 +4,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <optional>
 
 #include "server/session_context.hpp"
@@ -24,13 +25,14 @@ class Listener {
  private:
   void accept();
   void welcome(boost::asio::ip::tcp::socket socket);
-  void turn_away(boost::asio::ip::tcp::socket socket);
+  void turn_away(boost::asio::ip::tcp::socket socket, const std::string& remote_address);
 
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer pause_;
   std::optional<boost::asio::ssl::context> tls_;
   SessionContext context_;
   ConnectionLimit& limit_;
+  std::chrono::steady_clock::time_point complained_at_;
   std::uint16_t port_ = 0;
 };
 

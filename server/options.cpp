@@ -233,6 +233,15 @@ void add_serve_options(OptionTable& table, Options& options) {
                "layers above it do not matter; 0 = all do");
   table.text("maps", "DIR", options.maps_dir, "serve every *.flog in it beside the live map");
   add_access_options(table, options);
+  table.choice<LogFormat>("log-format", options.log.format,
+                          {{"text", LogFormat::text}, {"json", LogFormat::json}},
+                          "of the events on stderr: a line to read, or a JSON object a line");
+  table.choice<LogLevel>("log-level", options.log.level,
+                         {{"debug", LogLevel::debug},
+                          {"info", LogLevel::info},
+                          {"warning", LogLevel::warning},
+                          {"error", LogLevel::error}},
+                         "events of this level and above are written; debug names every request");
 }
 
 std::vector<std::string> all_option_names() {

@@ -6,6 +6,7 @@
 #include "camera/source_spec.hpp"
 #include "mapping/flog/flog_options.hpp"
 #include "mapping/front_end.hpp"
+#include "server/log.hpp"
 #include "server/option_table.hpp"
 #include "server/serve_options.hpp"
 
@@ -18,6 +19,7 @@ struct Options {
   FrontEndOptions front_end;
   FlogOptions flog;
   ServeOptions serve;
+  LogOptions log;
 
   std::string poses_file;                    // map with these poses instead of odometry
   PosesFrame poses_frame = PosesFrame::raw;  // what --poses and --first-pose are poses of

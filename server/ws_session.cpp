@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "server/log.hpp"
+
 namespace flogmap {
 
 namespace net = boost::asio;
@@ -67,6 +69,8 @@ void WsSession<Stream>::on_accept(ErrorCode error) {
   if (error) return;
   open_ = true;
   context_.viewers.join(*this);
+  log_event(LogLevel::info, "viewer joined",
+            {{"remote", peer_.remote_address}, {"viewers", std::int64_t{context_.state.num_viewers}}});
   watch();
   read();
 }
@@ -161,6 +165,9 @@ void WsSession<Stream>::close(const StreamClose& reason) {
   if (!open_) return;
   open_ = false;
   context_.state.metrics.count_closed_stream(reason.code);
+  log_event(
+      LogLevel::info, "viewer is sent away",
+      {{"remote", peer_.remote_address}, {"code", std::int64_t{reason.code}}, {"reason", reason.reason}});
   wake_timer_.cancel();
   watch_timer_.expires_after(kCloseDeadline);
   watch_timer_.async_wait([weak = this->weak_from_this()](ErrorCode error) {
@@ -173,6 +180,7 @@ void WsSession<Stream>::close(const StreamClose& reason) {
 
 template <typename Stream>
 void WsSession<Stream>::cut() {
+  if (open_) log_event(LogLevel::info, "viewer left", {{"remote", peer_.remote_address}});
   open_ = false;
   context_.viewers.leave(*this);
   watch_timer_.cancel();

@@ -12,6 +12,7 @@
 #include "server/commands/mapping_session.hpp"
 #include "server/commands/stored_control.hpp"
 #include "server/hub.hpp"
+#include "server/log.hpp"
 #include "server/map_store.hpp"
 #include "server/pipeline.hpp"
 #include "server/store/store_writer.hpp"
@@ -101,12 +102,19 @@ void announce(const Options& options, const Hub& hub, const std::string& what) {
                            : address.find(':') != std::string::npos ? "[" + address + "]"
                                                                     : address;
   const std::string scheme = options.serve.tls_cert.empty() ? "http" : "https";
-  std::printf("%s: open %s://%s:%u in a browser (Ctrl-C ends)\n", what.c_str(), scheme.c_str(), host.c_str(),
-              static_cast<unsigned>(hub.port()));
-  if (options.serve.insecure_no_auth && !is_loopback(address))
-    std::printf("warning: everybody who can reach this address may look and control (--insecure-no-auth)\n");
-  if (options.serve.web_root.empty()) std::printf("warning: the page is not built; run scripts/build\n");
-  std::fflush(stdout);
+  const std::string url = scheme + "://" + host + ":" + std::to_string(hub.port());
+  if (options.log.format == LogFormat::text) {
+    std::printf("%s: open %s in a browser (Ctrl-C ends)\n", what.c_str(), url.c_str());
+    std::fflush(stdout);
+  }
+  log_event(LogLevel::info, "serving", {{"what", what}, {"url", url}, {"version", FLOGMAP_VERSION}});
+  if (options.serve.insecure_no_auth && !is_loopback(address)) {
+    log_event(LogLevel::warning,
+              "everybody who can reach this address may look and control (--insecure-no-auth)");
+  }
+  if (options.serve.web_root.empty()) {
+    log_event(LogLevel::warning, "the page is not built; run scripts/build");
+  }
 }
 
 MapBegin begin_of(const StoredMap& map, const std::string& reason) {
@@ -189,6 +197,14 @@ MapStore open_store(const std::string& file) {
   }
 }
 
+void log_failure(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& error) {
+    log_event(LogLevel::error, "the mapping failed", {{"error", error.what()}});
+  }
+}
+
 /// Maps and serves until the hub is told to end; returns why the mapping failed, if it did.
 template <typename Announce>
 std::exception_ptr serve_until_end(Pipeline& pipeline, Hub& hub, const Announce& announce_it) {
@@ -199,6 +215,7 @@ std::exception_ptr serve_until_end(Pipeline& pipeline, Hub& hub, const Announce&
       pipeline.wait();
     } catch (...) {
       failure = std::current_exception();
+      log_failure(failure);
       hub.drain("the mapping failed");
     }
   });
@@ -234,6 +251,10 @@ int serve_source(const Options& options, HubInfo info) {
       serve_until_end(pipeline, hub, [&] { announce(options, hub, "Mapping " + options.source.spec); });
   if (store) {
     const StoreState saved = store->flush();
+    log_event(saved.ok ? LogLevel::info : LogLevel::error, "store",
+              {{"file", options.store},
+               {"revision", static_cast<std::int64_t>(saved.committed_revision)},
+               {"problem", saved.problem}});
     if (!saved.ok && !failure) throw std::runtime_error(saved.problem);
   }
   if (failure) std::rethrow_exception(failure);
@@ -268,6 +289,7 @@ RunCommand add_serve(CLI::App& app) {
     info.config_json = state->table.effective().dump();
     info.version = FLOGMAP_VERSION;
     limit_map_memory(options);
+    const LogScope log(options.log);
     return options.source.spec.empty() ? serve_stored(options, info) : serve_source(options, info);
   };
 }
