@@ -69,6 +69,11 @@ class BoundedQueue {
     thrown_away.swap(values_);
   }
 
+  [[nodiscard]] std::size_t size() const {
+    const std::scoped_lock lock(mutex_);
+    return values_.size();
+  }
+
   /// Values that had to go to make room; always 0 with WhenFull::wait.
   [[nodiscard]] std::uint64_t dropped() const {
     const std::scoped_lock lock(mutex_);

@@ -37,6 +37,7 @@ class LoopStage {
 
   /// Loops closed in this map. From any thread.
   [[nodiscard]] std::uint64_t num_loops() const { return num_loops_; }
+  [[nodiscard]] std::size_t num_queued() const { return views_.size(); }
 
  private:
   struct Offered {

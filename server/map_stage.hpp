@@ -37,6 +37,8 @@ class MapStage {
 
   /// Views that wait for their place. From any thread.
   [[nodiscard]] std::uint64_t num_waiting() const { return num_waiting_; }
+  /// Views that wait for this stage. From any thread.
+  [[nodiscard]] std::size_t num_queued() const { return items_.size(); }
 
   [[nodiscard]] const MapIntegrator& map() const { return builder_.map(); }
 

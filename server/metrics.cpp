@@ -7,6 +7,8 @@
 #include <prometheus/text_serializer.h>
 
 #include <array>
+#include <map>
+#include <vector>
 
 namespace flogmap {
 
@@ -46,10 +48,11 @@ struct Metrics::Families {
                                .Help("Time of routes, pictures and exports on the query thread")
                                .Register(registry)
                                .Add({}, ps::Histogram::BucketBoundaries{0.001, 0.01, 0.1, 1, 10});
-  ps::Family<ps::Gauge>& stages = ps::BuildGauge()
-                                      .Name("flogmap_stage_seconds")
-                                      .Help("Time of the mapping's stages per frame, lately")
-                                      .Register(registry);
+  ps::Family<ps::Histogram>& stages = ps::BuildHistogram()
+                                          .Name("flogmap_stage_seconds")
+                                          .Help("Time of the mapping's stages per frame")
+                                          .Register(registry);
+  std::map<std::string, StageReport> seen_stages;  // what the histograms hold already
 
   Families() {
     for (int hundreds = 1; hundreds < 6; ++hundreds) {
@@ -87,8 +90,23 @@ void Metrics::set(const std::string& name, const std::string& help, double value
   ps::BuildGauge().Name(name).Help(help).Register(families_->registry).Add({}).Set(value);
 }
 
-void Metrics::set_stage(const std::string& stage, const std::string& quantile, double seconds) {
-  families_->stages.Add({{"stage", stage}, {"quantile", quantile}}).Set(seconds);
+void Metrics::set(const std::string& name, const std::string& help, const std::string& label,
+                  const std::string& label_value, double value) {
+  ps::BuildGauge().Name(name).Help(help).Register(families_->registry).Add({{label, label_value}}).Set(value);
+}
+
+/// The pipeline has counted already; the histogram is told what is new.
+void Metrics::set_stage(const StageReport& stage) {
+  ps::Histogram::BucketBoundaries bounds_s;
+  for (const double ms : kTimeClassesMs) bounds_s.push_back(ms / 1000);
+  ps::Histogram& histogram = families_->stages.Add({{"stage", stage.stage}}, bounds_s);
+  StageReport& seen = families_->seen_stages[stage.stage];
+  std::vector<double> added;
+  for (std::size_t i = 0; i < stage.counts.size(); ++i) {
+    added.push_back(static_cast<double>(stage.counts[i] - seen.counts[i]));
+  }
+  histogram.ObserveMultiple(added, (stage.total_ms - seen.total_ms) / 1000);
+  seen = stage;
 }
 
 std::string Metrics::text() const { return ps::TextSerializer().Serialize(families_->registry.Collect()); }

@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "server/publication.hpp"
+
 namespace flogmap {
 
 /// What Prometheus is told of the network side. Counters are cheap: an atomic addition.
@@ -23,7 +25,10 @@ class Metrics {
 
   /// A value as it is now: gauges of the map and the mapping are set right before they are read.
   void set(const std::string& name, const std::string& help, double value);
-  void set_stage(const std::string& stage, const std::string& quantile, double seconds);
+  /// Likewise, one of several values that a label tells apart.
+  void set(const std::string& name, const std::string& help, const std::string& label,
+           const std::string& label_value, double value);
+  void set_stage(const StageReport& stage);
 
   /// Prometheus text format 0.0.4.
   [[nodiscard]] std::string text() const;

@@ -108,6 +108,7 @@ bool Pipeline::read_frame() {
   {
     const std::scoped_lock lock(counters_mutex_);
     skipped_ = source_->skipped();
+    skew_ = source_->skew();
   }
   if (!frame) return false;
   ++frames_read_;
@@ -280,6 +281,8 @@ StatusReport Pipeline::status() const {
     const std::scoped_lock lock(counters_mutex_);
     report = counters_;
     skipped = skipped_;
+    report.skew_mean_ms = skew_ ? skew_->mean_ms : 0;
+    report.skew_largest_ms = skew_ ? skew_->largest_ms : 0;
   }
   const std::uint64_t unplaced = unplaced_frames_;
   report.tracked -= unplaced;
@@ -293,6 +296,8 @@ StatusReport Pipeline::status() const {
                               " frames skipped; last: " + skipped.last_reason);
   }
   report.stages = statistics_.report();
+  report.queues = {{"frames", frames_.size()}, {"views", map_.num_queued()}};
+  if (loops_) report.queues.push_back({"loop", loops_->num_queued()});
   return report;
 }
 

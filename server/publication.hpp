@@ -2,6 +2,7 @@
 // in favour of a newer one.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -31,10 +32,22 @@ struct PictureReport {
   std::shared_ptr<const DisparityImage> disparity;
 };
 
+/// Upper bounds of the classes that the times of stages are counted in; longer ones are one class more.
+inline constexpr std::array<double, 10> kTimeClassesMs{1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
+using TimeCounts = std::array<std::uint64_t, kTimeClassesMs.size() + 1>;
+
 struct StageReport {
   std::string stage;  // read, rectify, disparity, odometry, map
   double median_ms = 0;
   double p95_ms = 0;
+  TimeCounts counts{};  // of this run
+  double total_ms = 0;
+};
+
+/// A queue between two stages.
+struct QueueReport {
+  std::string queue;  // frames, views, loop
+  std::uint64_t waiting = 0;
 };
 
 /// How the mapping does; published about twice a second.
@@ -49,6 +62,9 @@ struct StatusReport {
   std::uint64_t dropped_frames = 0;  // live: the queue was full
   std::uint64_t skipped_frames = 0;  // could not be read
   std::vector<StageReport> stages;
+  std::vector<QueueReport> queues;
+  double skew_mean_ms = 0;  // between left and right picture, where the source knows it
+  double skew_largest_ms = 0;
   std::vector<std::string> warnings;  // in words, with what to do
   std::string alignment;              // given, gravity, ground, none
 };

@@ -33,6 +33,9 @@ struct ServerState {
   StatusReport status;
 
   std::uint32_t num_viewers = 0;
+  std::size_t num_waiting_tiles = 0;   // of all viewers together, lately
+  std::size_t most_waiting_tiles = 0;  // of the one that lags most
+  std::size_t num_waiting_queries = 0;
   bool draining = false;
   std::chrono::steady_clock::time_point pictures_asked_at;  // over REST
   Metrics metrics;

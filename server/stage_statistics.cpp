@@ -17,6 +17,9 @@ double percentile(std::vector<float>& values, double share) {
 void StageStatistics::add(Stage stage, double ms) {
   const std::scoped_lock lock(mutex_);
   Samples& samples = samples_[static_cast<std::size_t>(stage)];
+  const auto time_class = std::lower_bound(kTimeClassesMs.begin(), kTimeClassesMs.end(), ms);
+  ++samples.counts[static_cast<std::size_t>(time_class - kTimeClassesMs.begin())];
+  samples.total_ms += ms;
   if (samples.ms.size() < window_) {
     samples.ms.push_back(static_cast<float>(ms));
     return;
@@ -28,13 +31,13 @@ void StageStatistics::add(Stage stage, double ms) {
 std::vector<StageReport> StageStatistics::report() const {
   std::vector<StageReport> reports;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    std::vector<float> values;
+    Samples samples;
     {
       const std::scoped_lock lock(mutex_);
-      values = samples_[i].ms;
+      samples = samples_[i];
     }
-    const double median_ms = percentile(values, 0.5);
-    reports.push_back({kStageNames[i], median_ms, percentile(values, 0.95)});
+    const double median_ms = percentile(samples.ms, 0.5), p95_ms = percentile(samples.ms, 0.95);
+    reports.push_back({kStageNames[i], median_ms, p95_ms, samples.counts, samples.total_ms});
   }
   return reports;
 }

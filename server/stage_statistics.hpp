@@ -13,8 +13,8 @@ namespace flogmap {
 enum class Stage : std::uint8_t { read, rectify, disparity, odometry, map };
 inline constexpr std::array<const char*, 5> kStageNames{"read", "rectify", "disparity", "odometry", "map"};
 
-/// How long the stages take: median and 95th percentile of the last `window` values of each. Written by the
-/// pipeline's threads, read by any.
+/// How long the stages take: median and 95th percentile of the last `window` values of each, and how many of
+/// all fall into which class. Written by the pipeline's threads, read by any.
 class StageStatistics {
  public:
   explicit StageStatistics(std::size_t window) : window_(window) {}
@@ -23,8 +23,10 @@ class StageStatistics {
 
  private:
   struct Samples {
-    std::vector<float> ms;
+    std::vector<float> ms;  // the last ones
     std::size_t next = 0;
+    TimeCounts counts{};  // all
+    double total_ms = 0;
   };
   const std::size_t window_;
   mutable std::mutex mutex_;

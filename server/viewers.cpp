@@ -44,12 +44,22 @@ void Viewers::tracked() {
 }
 
 void Viewers::status_changed() {
+  count_waiting();
   if (viewers_.empty()) return;
   const Bytes status = to_shared(encode_status(state_.status, state_.serving_status()));
   for (Viewer* viewer : viewers_) {
     if (viewer->protocol().greeted()) viewer->protocol().outbox().status(status);
   }
   playback_changed();
+}
+
+void Viewers::count_waiting() {
+  state_.num_waiting_tiles = state_.most_waiting_tiles = 0;
+  for (Viewer* viewer : viewers_) {
+    const std::size_t waiting = viewer->protocol().outbox().num_pending();
+    state_.num_waiting_tiles += waiting;
+    state_.most_waiting_tiles = std::max(state_.most_waiting_tiles, waiting);
+  }
 }
 
 void Viewers::playback_changed() {

@@ -49,6 +49,8 @@ class Viewers {
   [[nodiscard]] std::size_t size() const { return viewers_.size(); }
 
  private:
+  void count_waiting();
+
   ServerState& state_;
   std::set<Viewer*> viewers_;
 };

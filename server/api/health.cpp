@@ -28,6 +28,18 @@ ApiAnswer get_readyz(const ApiRequest&, ServerState& state) {
   return response;
 }
 
+/// How much waits where. Every queue is bounded; one that is always full shows who is too slow.
+void collect_queues(ServerState& state) {
+  const auto set = [&state](const std::string& queue, std::size_t waiting) {
+    state.metrics.set("flogmap_queue_depth", "Entries that wait, by queue", "queue", queue,
+                      static_cast<double>(waiting));
+  };
+  for (const QueueReport& queue : state.status.queues) set(queue.queue, queue.waiting);
+  set("queries", state.num_waiting_queries);
+  set("viewer_tiles", state.num_waiting_tiles);
+  set("viewer_tiles_slowest", state.most_waiting_tiles);
+}
+
 void collect(ServerState& state) {
   Metrics& metrics = state.metrics;
   const StatusReport& report = state.status;
@@ -48,10 +60,11 @@ void collect(ServerState& state) {
   metrics.set("flogmap_views_waiting", "Views whose place in the map is not known yet",
               static_cast<double>(report.waiting_views));
   metrics.set("flogmap_loops", "Loops closed", static_cast<double>(report.loops));
-  for (const StageReport& stage : report.stages) {
-    metrics.set_stage(stage.stage, "0.5", stage.median_ms / 1000);
-    metrics.set_stage(stage.stage, "0.95", stage.p95_ms / 1000);
-  }
+  metrics.set("flogmap_skew_mean_seconds", "Between left and right picture, where it is known",
+              report.skew_mean_ms / 1000);
+  metrics.set("flogmap_skew_largest_seconds", "Likewise, the largest", report.skew_largest_ms / 1000);
+  for (const StageReport& stage : report.stages) metrics.set_stage(stage);
+  collect_queues(state);
 }
 
 ApiAnswer get_metrics(const ApiRequest&, ServerState& state) {
