@@ -6,6 +6,7 @@
 
 #include "server/api/json_body.hpp"
 #include "server/api/resources.hpp"
+#include "server/log.hpp"
 
 namespace flogmap {
 namespace {
@@ -15,6 +16,18 @@ using std::chrono::steady_clock;
 constexpr std::size_t kMaxWaitingQueries = 16;
 constexpr std::string_view kLogin = "/api/v1/login";
 constexpr std::string_view kLogout = "/api/v1/logout";
+
+/// What no request should be able to bring about.
+ApiResponse fault(const std::string& path, const std::exception& error) {
+  log_event(LogLevel::error, "a request failed", {{"path", path}, {"error", std::string(error.what())}});
+  return problem(500, "internal", "a fault of the server");
+}
+
+ApiResponse busy() {
+  ApiResponse response = problem(503, "busy", "too many queries wait; try again soon");
+  response.headers.emplace_back("Retry-After", "1");
+  return response;
+}
 
 bool changes_something(Method method) { return method == Method::post || method == Method::patch; }
 
@@ -65,18 +78,20 @@ std::optional<ApiResponse> HttpApp::refuse_stream(const ApiRequest& request, boo
   return std::nullopt;
 }
 
-void HttpApp::answer(ApiRequest request, Done done) {
+void HttpApp::answer(ApiRequest& request, Done done) {
   identify(request);
   ApiAnswer answer = problem(500, "internal", "a fault of the server");
   try {
     answer = dispatch(request);
   } catch (const RefusedRequest& refused) {
     answer = refused.response();
+  } catch (const std::exception& error) {
+    answer = fault(request.path, error);
   }
   if (auto* response = std::get_if<ApiResponse>(&answer)) {
     done(std::move(*response));
   } else {
-    run(std::move(std::get<ApiJob>(answer)), std::move(done));
+    run(request.path, std::move(std::get<ApiJob>(answer)), std::move(done));
   }
 }
 
@@ -88,16 +103,14 @@ ApiAnswer HttpApp::dispatch(ApiRequest& request) {
   }
   if (request.path == kLogin || request.path == kLogout) return log_in(request);
   const bool reads = request.method == Method::get || request.method == Method::head;
-  if (reads && (request.path == "/" || web_.holds(request.path))) return web_.answer(request);
+  if (request.path == "/" || web_.holds(request.path)) {
+    return reads ? web_.answer(request) : only_allowed(request, "GET, HEAD");
+  }
   return router_.answer(request, state_);
 }
 
 ApiResponse HttpApp::log_in(const ApiRequest& request) {
-  if (request.method != Method::post) {
-    ApiResponse response = problem(405, "method-not-allowed", "POST a token");
-    response.headers.emplace_back("Allow", "POST");
-    return response;
-  }
+  if (request.method != Method::post) return only_allowed(request, "POST");
   const auto now = steady_clock::now();
   const std::string attributes =
       std::string("; Path=/; HttpOnly; SameSite=Strict") + (request.encrypted ? "; Secure" : "");
@@ -118,6 +131,7 @@ ApiResponse HttpApp::log_in(const ApiRequest& request) {
   const auto cookie = access_.log_in(secret, now);
   if (!cookie) {
     access_.count_failure(request.remote_address, now);
+    log_event(LogLevel::warning, "wrong token", {{"remote", request.remote_address}});
     return problem(401, "wrong-token", "this is no token of this server", "token");
   }
   const Role role = access_.role_of("Bearer " + secret, {}, now);
@@ -128,8 +142,8 @@ ApiResponse HttpApp::log_in(const ApiRequest& request) {
   return response;
 }
 
-void HttpApp::run(ApiJob job, Done done) {
-  auto work = [this, job = std::move(job), done] {
+void HttpApp::run(const std::string& path, ApiJob job, Done done) {
+  auto work = [this, path, job = std::move(job), done] {
     const auto start = steady_clock::now();
     ApiResponse response = problem(500, "internal", "a fault of the server");
     try {
@@ -137,15 +151,18 @@ void HttpApp::run(ApiJob job, Done done) {
     } catch (const RefusedRequest& refused) {
       response = refused.response();
     } catch (const std::exception& error) {
-      response = problem(500, "query-failed", error.what());
+      response = fault(path, error);
     }
     const double seconds = std::chrono::duration<double>(steady_clock::now() - start).count();
     post_([this, seconds, response = std::move(response), done] {
       state_.metrics.observe_query_s(seconds);
+      state_.num_waiting_queries = queries_.num_waiting();
       done(response);
     });
   };
-  if (!queries_.submit(std::move(work))) done(problem(503, "busy", "too many queries wait; try again soon"));
+  const bool taken = queries_.submit(std::move(work));
+  state_.num_waiting_queries = queries_.num_waiting();
+  if (!taken) done(busy());
 }
 
 ApiResponse finished(const ApiRequest& request, ApiResponse response) {

@@ -20,8 +20,9 @@ class HttpApp {
 
   HttpApp(ServerState& state, Access& access, Post post);
 
-  /// Calls `done` on the network thread, at once or when the query thread has finished.
-  void answer(ApiRequest request, Done done);
+  /// Calls `done` on the network thread, at once or when the query thread has finished. Fills in the role and
+  /// the captures of the request, which must live until then.
+  void answer(ApiRequest& request, Done done);
 
   /// The checks before a WebSocket is opened: nothing if it may be.
   std::optional<ApiResponse> refuse_stream(const ApiRequest& request, bool offers_protocol);
@@ -36,7 +37,7 @@ class HttpApp {
   std::optional<ApiResponse> refuse(const ApiRequest& request) const;
   ApiAnswer dispatch(ApiRequest& request);
   ApiResponse log_in(const ApiRequest& request);
-  void run(ApiJob job, Done done);
+  void run(const std::string& path, ApiJob job, Done done);
 
   ServerState& state_;
   Access& access_;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <utility>
 
+#include "server/log.hpp"
 #include "server/response_head.hpp"
 #include "server/ws_session.hpp"
 
@@ -128,14 +129,15 @@ bool HttpSession<Stream>::refuse_early(ErrorCode error) {
     response = url_is_long ? problem(414, "url-too-long", "at most 2 KiB")
                            : problem(431, "header-too-large", "at most 8 KiB");
   }
-  respond({}, std::move(response), false);
+  request_ = {};
+  respond(std::move(response), false);
   return true;
 }
 
 template <typename Stream>
-ApiRequest HttpSession<Stream>::request_values() const {
-  const auto& message = parser_->get();
-  ApiRequest request;
+void HttpSession<Stream>::take_request_values() {
+  auto& message = parser_->get();
+  ApiRequest& request = request_ = {};
   request.method = method_of(message.method());
   request.accept = text(message[http::field::accept]);
   request.accept_encoding = text(message[http::field::accept_encoding]);
@@ -145,58 +147,57 @@ ApiRequest HttpSession<Stream>::request_values() const {
   request.authorization = text(message[http::field::authorization]);
   request.host = text(message[http::field::host]);
   request.origin = text(message[http::field::origin]);
-  request.body = message.body();
+  request.body = std::move(message.body());
   request.remote_address = peer_.remote_address;
   request.local_address = peer_.local_address;
   request.encrypted = std::is_same_v<Stream, TlsStream>;
-  return request;
 }
 
 template <typename Stream>
 void HttpSession<Stream>::handle() {
-  ApiRequest request = request_values();
+  take_request_values();
+  ApiRequest& request = request_;
   const auto& message = parser_->get();
   const bool keep_alive = message.keep_alive() && !context_.state.draining;
   const std::string target = text(message.target());
   if (target.size() > kMaxTargetBytes) {
-    return respond(request, problem(414, "url-too-long", "at most 2 KiB"), false);
+    return respond(problem(414, "url-too-long", "at most 2 KiB"), false);
   }
   if (!parse_target(target, request)) {
-    return respond(request, problem(400, "bad-url", "the URL holds a broken escape"), keep_alive);
+    return respond(problem(400, "bad-url", "the URL holds a broken escape"), keep_alive);
   }
-  if (request.host.empty())
-    return respond(request, problem(400, "host-missing", "send a Host header"), false);
-  if (request.path == kStreamPath && request.method == Method::get) return open_stream(request);
-  context_.app.answer(request, [self = this->shared_from_this(), request, keep_alive](ApiResponse response) {
-    self->respond(request, std::move(response), keep_alive);
+  if (request.host.empty()) return respond(problem(400, "host-missing", "send a Host header"), false);
+  if (request.path == kStreamPath && request.method == Method::get) return open_stream();
+  context_.app.answer(request, [self = this->shared_from_this(), keep_alive](ApiResponse response) {
+    self->respond(std::move(response), keep_alive);
   });
 }
 
 template <typename Stream>
-void HttpSession<Stream>::open_stream(const ApiRequest& request) {
+void HttpSession<Stream>::open_stream() {
   const auto& message = parser_->get();
-  ApiRequest identified = request;
-  context_.app.identify(identified);
+  context_.app.identify(request_);
   if (!beast::websocket::is_upgrade(message)) {
     ApiResponse response = problem(400, "upgrade-needed", "open this with a WebSocket");
-    return respond(request, std::move(response), false);
+    return respond(std::move(response), false);
   }
   const std::string offered = text(message[http::field::sec_websocket_protocol]);
   const bool offers_protocol = offered.find(kStreamProtocol) != std::string::npos;
-  if (auto refused = context_.app.refuse_stream(identified, offers_protocol)) {
-    return respond(request, std::move(*refused), false);
+  if (auto refused = context_.app.refuse_stream(request_, offers_protocol)) {
+    return respond(std::move(*refused), false);
   }
   beast::get_lowest_layer(stream_).expires_never();  // from here on the stream has its own deadlines
-  std::make_shared<WsSession<Stream>>(std::move(stream_), context_, std::move(peer_), identified.role)
+  std::make_shared<WsSession<Stream>>(std::move(stream_), context_, std::move(peer_), request_.role)
       ->run(parser_->release());
 }
 
 template <typename Stream>
-void HttpSession<Stream>::respond(const ApiRequest& request, ApiResponse response, bool keep_alive) {
-  response = finished(request, std::move(response));
+void HttpSession<Stream>::respond(ApiResponse response, bool keep_alive) {
+  response = finished(request_, std::move(response));
   head_ = response_head(response, keep_alive);
-  body_ = request.method == Method::head ? nullptr : response.body;
+  body_ = request_.method == Method::head ? nullptr : response.body;
   context_.state.metrics.count_response(response.status, body_ ? body_->size() : 0);
+  note(response.status);
   const std::array<net::const_buffer, 2> pieces{net::buffer(head_),
                                                 body_ ? net::buffer(*body_) : net::const_buffer{}};
   beast::get_lowest_layer(stream_).expires_after(kWriteDeadline);
@@ -204,6 +205,17 @@ void HttpSession<Stream>::respond(const ApiRequest& request, ApiResponse respons
                    [self = this->shared_from_this(), keep_alive](ErrorCode error, std::size_t) {
                      self->on_written(error, keep_alive);
                    });
+}
+
+template <typename Stream>
+void HttpSession<Stream>::note(int status) const {
+  if (!log_wants(LogLevel::debug)) return;
+  log_event(LogLevel::debug, "request",
+            {{"remote", peer_.remote_address},
+             {"method", parser_ ? text(parser_->get().method_string()) : std::string()},
+             {"path", request_.path},
+             {"status", std::int64_t{status}},
+             {"bytes", static_cast<std::int64_t>(body_ ? body_->size() : 0)}});
 }
 
 template <typename Stream>

@@ -30,19 +30,21 @@ class HttpSession : public std::enable_shared_from_this<HttpSession<Stream>> {
   void on_header(ErrorCode error);
   void on_body(ErrorCode error);
   void handle();
-  void open_stream(const ApiRequest& request);
+  void open_stream();
   bool refuse_early(ErrorCode error);
-  void respond(const ApiRequest& request, ApiResponse response, bool keep_alive);
+  void respond(ApiResponse response, bool keep_alive);
+  void note(int status) const;
   void on_written(ErrorCode error, bool keep_alive);
   void linger();
-  [[nodiscard]] ApiRequest request_values() const;
+  void take_request_values();
 
   Stream stream_;
   SessionContext context_;
   Peer peer_;
   boost::beast::flat_buffer buffer_;
   std::optional<Parser> parser_;
-  std::string head_;  // of the response that is being written
+  ApiRequest request_;  // that is being answered
+  std::string head_;    // of the response that is being written
   Bytes body_;
   int lingered_ = 0;
 };

@@ -106,6 +106,13 @@ ApiResponse json_response(std::string json, int status) {
   return response;
 }
 
+ApiResponse tagged_json(std::string json, std::string etag) {
+  ApiResponse response = json_response(std::move(json));
+  response.etag = std::move(etag);
+  response.cache_control = kLiveCache;
+  return response;
+}
+
 std::string_view reason_phrase(int status) {
   constexpr std::array<std::pair<int, std::string_view>, 20> kPhrases{{
       {200, "OK"},

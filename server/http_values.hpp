@@ -40,6 +40,9 @@ struct ApiRequest {
   [[nodiscard]] std::optional<std::string_view> parameter(std::string_view name) const;
 };
 
+/// A copy may be kept, but must be asked about each time.
+inline constexpr const char* kLiveCache = "private, no-cache";
+
 struct ApiResponse {
   int status = 200;
   std::string content_type;
@@ -58,6 +61,9 @@ ApiResponse problem(int status, std::string_view code, std::string_view detail,
                     std::string_view parameter = {});
 
 ApiResponse json_response(std::string json, int status = 200);
+
+/// Likewise, of which a copy may be kept under this tag.
+ApiResponse tagged_json(std::string json, std::string etag);
 
 /// Reason phrase of a status code.
 std::string_view reason_phrase(int status);

@@ -33,7 +33,15 @@ std::vector<Slot> ServedMap::update(std::uint64_t revision, const std::vector<Ti
   return board_.update(tiles);
 }
 
-void ServedMap::append(const TrajectoryEntry& entry) { trajectory_.push_back(entry); }
+void ServedMap::append(const TrajectoryEntry& entry) {
+  trajectory_.push_back(entry);
+  ++path_version_;
+}
+
+void ServedMap::add(const SharedView& view) {
+  views_.add(view);
+  ++path_version_;
+}
 
 void ServedMap::rewrite(std::vector<TrajectoryEntry> trajectory) {
   if (!trajectory.empty()) {
@@ -45,6 +53,7 @@ void ServedMap::rewrite(std::vector<TrajectoryEntry> trajectory) {
   trajectory_ = std::move(trajectory);
   latest_part_ = {};
   rewritten_ = true;
+  ++path_version_;
 }
 
 Bytes ServedMap::tile_batch(std::uint64_t revision, bool complete, std::span<const Slot> slots,

@@ -26,11 +26,13 @@ class ServedMap {
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
   [[nodiscard]] const std::vector<TrajectoryEntry>& trajectory() const { return trajectory_; }
   [[nodiscard]] bool trajectory_was_rewritten() const { return rewritten_; }
+  /// Counts the changes of trajectory and views, which change no tile and so no revision.
+  [[nodiscard]] std::uint64_t path_version() const { return path_version_; }
   [[nodiscard]] const StereoCamera& camera() const { return camera_; }
+  [[nodiscard]] Operators operators() const { return board_.operators(); }
   [[nodiscard]] TileBoard& board() { return board_; }
   [[nodiscard]] const TileBoard& board() const { return board_; }
   [[nodiscard]] TilePictures& pictures() { return pictures_; }
-  [[nodiscard]] ViewShelf& views() { return views_; }
   [[nodiscard]] const ViewShelf& views() const { return views_; }
   [[nodiscard]] MapHeader header() const;
 
@@ -40,6 +42,7 @@ class ServedMap {
   /// Returns the slots that changed, overviews included.
   std::vector<Slot> update(std::uint64_t revision, const std::vector<TileUpdate>& tiles);
   void append(const TrajectoryEntry& entry);
+  void add(const SharedView& view);
   /// Entries later than the last one given stay.
   void rewrite(std::vector<TrajectoryEntry> trajectory);
 
@@ -75,6 +78,7 @@ class ServedMap {
   std::vector<TrajectoryEntry> trajectory_;
   ViewShelf views_;
   bool rewritten_ = false;
+  std::uint64_t path_version_ = 0;
   std::shared_ptr<const MapSnapshot> snapshot_;  // null: not made since the last change
   std::array<Batch, 4> batches_;                 // the latest, oldest replaced first
   std::size_t oldest_batch_ = 0;

@@ -1,21 +1,26 @@
 // GET /config, /calibration, /version
 #include <nlohmann/json.hpp>
 
+#include "server/api/parameters.hpp"
 #include "server/api/resources.hpp"
 
 namespace flogmap {
 namespace {
 
-ApiAnswer get_config(const ApiRequest&, ServerState& state) { return json_response(state.info.config_json); }
+ApiAnswer get_config(const ApiRequest&, ServerState& state) {
+  return tagged_json(state.info.config_json, etag_of_text(state.info.config_json));
+}
 
 ApiAnswer get_calibration(const ApiRequest&, ServerState& state) {
-  return json_response(state.info.calibration_json);
+  return tagged_json(state.info.calibration_json, etag_of_text(state.info.calibration_json));
 }
 
 ApiAnswer get_version(const ApiRequest&, ServerState& state) {
   const nlohmann::ordered_json json = {
       {"name", "flogmap"}, {"version", state.info.version}, {"stream_versions", {kProtocolVersion}}};
-  return json_response(json.dump());
+  std::string text = json.dump();
+  const std::string etag = etag_of_text(text);
+  return tagged_json(std::move(text), etag);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ ApiAnswer get_cell(const ApiRequest& request, ServerState& state) {
                      {"epoch", column.epoch},
                      {"rev", column.revision},
                      {"layers", layers}};
-  return json_response(json.dump());
+  return tagged_json(json.dump(), etag_of(map, request, state.options));
 }
 
 }  // namespace

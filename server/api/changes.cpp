@@ -70,9 +70,7 @@ ApiAnswer get_changes(const ApiRequest& request, ServerState& state) {
                      {"more", more},
                      {"tiles", tiles},
                      {"removed", removed}};
-  ApiResponse response = json_response(json.dump());
-  response.cache_control = "private, no-cache";
-  return response;
+  return tagged_json(json.dump(), etag_of(map, request, state.options));
 }
 
 }  // namespace

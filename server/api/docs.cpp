@@ -3,6 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "server/api/parameters.hpp"
 #include "server/api/resources.hpp"
 
 namespace flogmap {
@@ -89,6 +90,7 @@ ApiAnswer get_openapi(const ApiRequest&, ServerState&) {
   response.content_type = "application/yaml";
   response.cache_control = "no-cache";
   response.body = to_shared(std::string(openapi_yaml()));
+  response.etag = etag_of_text(*response.body);
   return response;
 }
 
@@ -98,6 +100,7 @@ ApiAnswer get_docs(const ApiRequest&, ServerState&) {
   response.content_type = "text/html; charset=utf-8";
   response.cache_control = "no-cache";
   response.body = page;
+  response.etag = etag_of_text(*page);
   return response;
 }
 
@@ -114,6 +117,7 @@ ApiAnswer get_style(const ApiRequest&, ServerState&) {
       "table{border-collapse:collapse;margin:.5rem 0;font-size:.9rem}td,th{text-align:left;padding:.2rem "
       ".8rem .2rem 0;"
       "border-bottom:1px solid #8884;vertical-align:top}");
+  response.etag = etag_of_text(*response.body);
   return response;
 }
 

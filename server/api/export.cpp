@@ -39,9 +39,11 @@ ApiAnswer get_export(const ApiRequest& request, ServerState& state) {
   options.layer = parse_layer(request.parameter("layer").value_or("fused"), map.board().info());
   options.rules.style = picture_choice(request, options.layer).style;
   options.rules.operators = state.options.operators;
-  return ApiJob([stored = stored_map(map, state), format, options] {
+  const std::string etag = etag_with_path(map, request, state.options);
+  if (is_known(request, etag)) return nothing_new(etag);
+  return ApiJob([stored = stored_map(map, state), format, options, etag] {
     ExportedFile file = export_bytes(format, stored, options);
-    ApiResponse response;
+    ApiResponse response = nothing_new(etag);
     response.content_type = file.content_type;
     response.headers.emplace_back("Content-Disposition", "attachment; filename=\"" + file.name + "\"");
     response.body = to_shared(std::move(file.bytes));

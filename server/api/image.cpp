@@ -39,6 +39,7 @@ ApiAnswer get_image(const ApiRequest& request, ServerState& state) {
   const auto layer = parse_layer(request.parameter("layer").value_or("fused"), map.board().info());
   const PictureChoice choice = picture_choice(request, layer);
   const auto width = static_cast<int>(integer_parameter(request, "width", 0, 1, 16384));
+  const std::string etag = etag_of(map, request, state.options);
   const auto snapshot = map.snapshot();
   const MapArea area = requested_area(*snapshot, bbox_parameter(request));
   if (area.empty()) {
@@ -53,13 +54,19 @@ ApiAnswer get_image(const ApiRequest& request, ServerState& state) {
     throw RefusedRequest(422, "picture-too-large",
                          "at most 16 megapixels of 64 million cells; give bbox or width", "width");
   }
+  if (is_known(request, etag)) return nothing_new(etag);
   Rules rules;
   rules.style = choice.style;
   rules.operators = state.options.operators;
   const bool for_robot = choice.style == Style::planning || choice.style == Style::motion;
   if (for_robot) rules.robot_radius_m = state.options.robot.radius_m;
   if (for_robot && state.options.robot.height_m > 0) rules.heights = {0, state.options.robot.height_m};
-  return ApiJob([=] { return picture_of(*snapshot, area, choice, rules, width); });
+  return ApiJob([=] {
+    ApiResponse response = picture_of(*snapshot, area, choice, rules, width);
+    response.etag = etag;
+    response.cache_control = kLiveCache;
+    return response;
+  });
 }
 
 }  // namespace

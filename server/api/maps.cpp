@@ -56,15 +56,14 @@ ApiAnswer get_maps(const ApiRequest&, ServerState& state) {
   Json maps = Json::array();
   if (state.live) maps.push_back(to_json(*state.live));
   for (const auto& [id, map] : state.stored) maps.push_back(to_json(*map));
-  return json_response(Json{{"maps", maps}}.dump());
+  std::string text = Json{{"maps", maps}}.dump();
+  const std::string etag = etag_of_text(text);
+  return tagged_json(std::move(text), etag);
 }
 
 ApiAnswer get_map(const ApiRequest& request, ServerState& state) {
   const ServedMap& map = requested_map(request, state);
-  ApiResponse response = json_response(to_json(map).dump());
-  response.etag = make_etag(map.epoch(), map.revision(), "map.json");
-  response.cache_control = "private, no-cache";
-  return response;
+  return tagged_json(to_json(map).dump(), etag_of(map, request, state.options));
 }
 
 }  // namespace

@@ -4,10 +4,39 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 namespace flogmap {
 namespace {
+
+/// FNV-1a, 64 bit.
+class Fingerprint {
+ public:
+  Fingerprint& add(std::string_view text) {
+    for (const char c : text) value_ = (value_ ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+    value_ = (value_ ^ 0xffU) * 0x100000001b3U;  // "ab","c" is not "a","bc"
+    return *this;
+  }
+  [[nodiscard]] std::string hex() const {
+    std::array<char, 17> digits{};
+    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(value_));
+    return digits.data();
+  }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+/// All that an answer depends on besides the map.
+std::string representation_of(const ApiRequest& request, const ServeOptions& options) {
+  Fingerprint print;
+  print.add(request.path).add(request.accept);
+  for (const auto& [name, value] : request.query) print.add(name).add(value);
+  print.add(std::to_string(static_cast<int>(options.operators)));
+  print.add(std::to_string(options.robot.radius_m)).add(std::to_string(options.robot.height_m));
+  return print.hex();
+}
 
 [[noreturn]] void refuse(std::string_view name, const std::string& wanted, std::string_view got) {
   throw RefusedRequest(400, "bad-parameter",
@@ -120,6 +149,31 @@ std::string make_etag(std::string_view epoch, std::uint64_t revision, std::strin
       .append(representation)
       .append("\"");
   return tag;
+}
+
+std::string etag_of(const ServedMap& map, const ApiRequest& request, const ServeOptions& options) {
+  return make_etag(map.epoch(), map.revision(), representation_of(request, options));
+}
+
+std::string etag_with_path(const ServedMap& map, const ApiRequest& request, const ServeOptions& options) {
+  return make_etag(map.epoch(), map.revision(),
+                   representation_of(request, options) + "." + std::to_string(map.path_version()));
+}
+
+std::string etag_of_text(std::string_view text) {
+  std::string tag = "\"";
+  return tag.append(Fingerprint().add(text).hex()).append("\"");
+}
+
+bool is_known(const ApiRequest& request, std::string_view etag) {
+  return etag_matches(request.if_none_match, etag);
+}
+
+ApiResponse nothing_new(std::string etag) {
+  ApiResponse response;
+  response.etag = std::move(etag);
+  response.cache_control = kLiveCache;
+  return response;
 }
 
 }  // namespace flogmap

@@ -48,4 +48,16 @@ PictureChoice picture_choice(const ApiRequest& request, std::optional<int> layer
 /// Strong tag "<epoch>-<rev>-<representation>", quotes included.
 std::string make_etag(std::string_view epoch, std::uint64_t revision, std::string_view representation);
 
+/// The tag of an answer that follows from a map, a request and the options alone.
+std::string etag_of(const ServedMap& map, const ApiRequest& request, const ServeOptions& options);
+/// Likewise, if it shows the path or the views, which may change without a revision.
+std::string etag_with_path(const ServedMap& map, const ApiRequest& request, const ServeOptions& options);
+/// The tag of a document that does not belong to one map: from its contents.
+std::string etag_of_text(std::string_view text);
+
+/// The client has this already: saves the work of making it again.
+bool is_known(const ApiRequest& request, std::string_view etag);
+/// What finished() makes a 304 of.
+ApiResponse nothing_new(std::string etag);
+
 }  // namespace flogmap

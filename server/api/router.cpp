@@ -1,9 +1,12 @@
 #include "server/api/router.hpp"
 
+#include <array>
 #include <utility>
 
 namespace flogmap {
 namespace {
+
+constexpr std::size_t kMostCaptures = 8;
 
 /// Cuts the text before the next '/' off the front.
 std::string_view next_segment(std::string_view& rest) {
@@ -35,17 +38,33 @@ ApiResponse refused(const ApiRequest& request) {
 
 }  // namespace
 
+ApiResponse only_allowed(const ApiRequest& request, std::string allow) {
+  allow += ", OPTIONS";
+  ApiResponse response;
+  if (request.method == Method::options) {
+    response.status = 204;
+  } else {
+    response = problem(405, "method-not-allowed", request.path + " takes " + allow);
+  }
+  response.headers.emplace_back("Allow", std::move(allow));
+  return response;
+}
+
 bool path_fits(std::string_view pattern, std::string_view path, std::vector<std::string>& captures) {
+  std::array<std::string_view, kMostCaptures> captured;
+  std::size_t num_captured = 0;
   while (!pattern.empty() && !path.empty()) {
     const std::string_view expected = next_segment(pattern), segment = next_segment(path);
     if (expected == "{}") {
-      if (segment.empty()) return false;
-      captures.emplace_back(segment);
+      if (segment.empty() || num_captured == kMostCaptures) return false;
+      captured[num_captured++] = segment;
     } else if (expected != segment) {
       return false;
     }
   }
-  return pattern.empty() && path.empty();
+  if (!pattern.empty() || !path.empty()) return false;
+  captures.insert(captures.end(), captured.begin(), captured.begin() + num_captured);
+  return true;
 }
 
 Router::Router(std::vector<Route> routes) : routes_(std::move(routes)) {}
@@ -71,15 +90,8 @@ ApiAnswer Router::answer(ApiRequest& request, ServerState& state) const {
     allow += std::string(name_of(route.method)) + ", ";
   }
   if (allow.empty()) return problem(404, "not-found", "there is nothing at " + request.path);
-  allow += "OPTIONS";
-  ApiResponse response;
-  if (request.method == Method::options) {
-    response.status = 204;
-  } else {
-    response = problem(405, "method-not-allowed", request.path + " takes " + allow);
-  }
-  response.headers.emplace_back("Allow", allow);
-  return response;
+  allow.erase(allow.size() - 2);
+  return only_allowed(request, std::move(allow));
 }
 
 }  // namespace flogmap

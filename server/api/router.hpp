@@ -36,6 +36,9 @@ class Router {
   std::vector<Route> routes_;
 };
 
+/// 204 to OPTIONS, 405 to every other method; both say with Allow what there is ("GET, HEAD").
+ApiResponse only_allowed(const ApiRequest& request, std::string allow);
+
 /// Whether a path fits a pattern; what stands for each {} is appended to captures.
 bool path_fits(std::string_view pattern, std::string_view path, std::vector<std::string>& captures);
 

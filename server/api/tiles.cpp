@@ -52,10 +52,11 @@ TileKey requested_key(const ApiRequest& request) {
   return {static_cast<std::uint32_t>(level), static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
 }
 
-/// Names what was asked for within one tile and revision.
-std::string representation(const PictureChoice& choice, std::string_view extension) {
+/// Names what was asked for within one tile and revision; after a restart the operators may be others.
+std::string representation(const PictureChoice& choice, Operators operators, std::string_view extension) {
   std::string name = choice.layer ? std::to_string(*choice.layer) : "fused";
-  const std::array<int, 2> numbers{static_cast<int>(choice.style), static_cast<int>(choice.palette)};
+  const std::array<int, 3> numbers{static_cast<int>(choice.style), static_cast<int>(choice.palette),
+                                   static_cast<int>(operators)};
   for (const int number : numbers) name.append(".").append(std::to_string(number));
   return name.append(".").append(extension);
 }
@@ -64,7 +65,8 @@ ApiResponse picture_of(ServedMap& map, Slot slot, const PictureChoice& choice) {
   ApiResponse response;
   response.content_type = "image/png";
   response.body = map.pictures().png(map.board(), slot, choice);
-  response.etag = make_etag(map.epoch(), map.board().revision(slot), representation(choice, "png"));
+  response.etag =
+      make_etag(map.epoch(), map.board().revision(slot), representation(choice, map.operators(), "png"));
   return response;
 }
 
@@ -79,7 +81,7 @@ ApiResponse message_of(ServedMap& map, Slot slot, std::optional<int> layer, cons
   response.content_type = "application/x-protobuf";
   response.body = map.board().message(slot, choice);
   response.etag = make_etag(map.epoch(), map.board().revision(slot),
-                            representation({layer, Style::visual, Palette::grey}, planes));
+                            representation({layer, Style::visual, Palette::grey}, map.operators(), planes));
   return response;
 }
 
@@ -99,9 +101,10 @@ ApiAnswer get_tile(const ApiRequest& request, ServerState& state) {
     response = message_of(map, *slot, layer, request);
   } else {
     response = json_response(tile_json(map.board(), *slot, layer).dump());
-    response.etag = make_etag(map.epoch(), map.board().revision(*slot), representation(choice, "json"));
+    response.etag =
+        make_etag(map.epoch(), map.board().revision(*slot), representation(choice, map.operators(), "json"));
   }
-  response.cache_control = "private, no-cache";
+  response.cache_control = kLiveCache;
   response.headers.emplace_back("Vary", "Accept");
   return response;
 }

@@ -35,7 +35,7 @@ ApiAnswer get_views(const ApiRequest& request, ServerState& state) {
   }
   const Json answer = {
       {"epoch", map.epoch()}, {"rev", map.revision()}, {"camera", to_json(map.camera())}, {"views", views}};
-  return json_response(answer.dump());
+  return tagged_json(answer.dump(), etag_with_path(map, request, state.options));
 }
 
 SharedView requested_view(const ApiRequest& request, const ServedMap& map) {
@@ -72,6 +72,7 @@ ApiAnswer get_mesh(const ApiRequest& request, ServerState& state) {
   const SharedView view = requested_view(request, map);
   const SE3 pose = poses_on_path({{view->number, view}}, map.trajectory()).front();
   const std::string etag = tag_of(map, *view, pose);
+  if (is_known(request, etag)) return nothing_new(etag);
   return ApiJob([view, pose, camera = map.camera(), etag] {
     ApiResponse response = mesh_response(*view, pose, camera);
     if (response.status != 200) return response;

@@ -62,8 +62,13 @@ std::string octomap_of(const StoredMap& map, Operators operators) {
   octomap::OcTree tree(map.info.grid.cell_size_m);
   for (const TileUpdate& update : map.tiles) fill_tile(tree, map, update, operators);
   tree.updateInnerOccupancy();
+  tree.toMaxLikelihood();
+  tree.prune();
+  // As OcTree::writeBinary() writes it, which also talks on stderr.
   std::ostringstream bytes;
-  if (!tree.writeBinary(bytes)) throw std::runtime_error("OctoMap cannot write the tree");
+  bytes << "# Octomap OcTree binary file\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
+        << tree.getResolution() << "\ndata\n";
+  if (!tree.writeBinaryData(bytes)) throw std::runtime_error("OctoMap cannot write the tree");
   return bytes.str();
 }
 
