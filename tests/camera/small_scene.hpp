@@ -5,8 +5,7 @@
 namespace flogmap::testing {
 
 /// A hall with a turned box, a cylinder and a second box, coarse enough to be painted in milliseconds.
-inline Scene small_scene() {
-  return parse_scene(R"({
+inline constexpr const char* kSmallScene = R"({
     "camera": {"width_px": 320, "height_px": 240, "focal_px": 210, "baseline_m": 0.12, "rate_hz": 10},
     "texel_m": 0.012,
     "materials": {"rough": {"pattern": "speckle", "size_m": 0.1}, "wall": {"pattern": "plaster"},
@@ -20,8 +19,8 @@ inline Scene small_scene() {
     "path": {"speed_m_s": 0.4, "tremor_m": 0.004, "tremor_deg": 0.8, "points": [
       {"at": [1.3, 0, 1.3], "look_at": [-1, 0.2, 0.7], "roll_deg": 8}, {"at": [0, 1.3, 1.2], "look_at": [0.2, -1, 0.7]},
       {"at": [-1.3, 0.2, 1.4], "look_at": [1, 0.2, 0.6], "roll_deg": -6}, {"at": [0, -1.4, 1.3], "look_at": [0, 1, 0.7]}]}
-  })",
-                     "small scene", ".");
-}
+  })";
+
+inline Scene small_scene() { return parse_scene(kSmallScene, "small scene", "."); }
 
 }  // namespace flogmap::testing

@@ -35,6 +35,17 @@ std::string subscribe_frame(const Subscribe& wish) {
   return message.SerializeAsString();
 }
 
+std::string viewport_frame(const Viewport& viewport) {
+  v1::ClientMessage message;
+  v1::Bounds& bounds = *message.mutable_viewport()->mutable_bounds();
+  bounds.set_x_min(viewport.bounds.x_min);
+  bounds.set_y_min(viewport.bounds.y_min);
+  bounds.set_x_max(viewport.bounds.x_max);
+  bounds.set_y_max(viewport.bounds.y_max);
+  message.mutable_viewport()->set_level(viewport.level);
+  return message.SerializeAsString();
+}
+
 std::string ack_frame(std::uint64_t bytes) {
   v1::ClientMessage message;
   message.mutable_ack()->set_bytes(bytes);
