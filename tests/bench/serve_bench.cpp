@@ -1,5 +1,6 @@
-// The network side under load: viewers as a separate process, poses at 20 Hz and a growing map. Prints a
-// table and writes build/bench/serve.json (path in the first argument).
+// The server under load, the load a process of its own: viewers on a map that grows at 20 Hz, clients that
+// fetch tiles, a map of 10,000 tiles, slow ones, and the real program. Prints a table and writes
+// build/bench/serve.json.
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,18 +15,22 @@
 #include <vector>
 
 #include "server/hub.hpp"
+#include "tests/bench/serve_fetch.hpp"
 #include "tests/bench/serve_load.hpp"
+#include "tests/bench/serve_snapshot.hpp"
 #include "tests/server/fake_session.hpp"
+#include "tests/server/loopback_hub.hpp"
+#include "tests/server/running_program.hpp"
 #include "tests/server/synthetic_walk.hpp"
 
 namespace flogmap {
 namespace {
 
+using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using std::chrono::steady_clock;
 
-constexpr int kViewers = 200;
 constexpr seconds kPhase{4};
 
 /// Resident memory of this process, KiB.
@@ -62,72 +67,149 @@ class LoadProcess {
                     "r")) {
     if (!pipe_) throw std::runtime_error("the load cannot be started");
   }
-  nlohmann::json result() {
+  json result() {
     std::string text;
     std::array<char, 4096> part{};
     while (const std::size_t size = std::fread(part.data(), 1, part.size(), pipe_))
       text.append(part.data(), size);
     pclose(pipe_);
-    return nlohmann::json::parse(text);
+    return json::parse(text);
   }
 
  private:
   FILE* pipe_;
 };
 
-/// serve_bench --load watch PORT VIEWERS | get PORT TARGET | again PORT TARGET
+/// What a load process does: serve_bench --load watch PORT VIEWERS | stall PORT VIEWERS | get PORT TARGET
+/// [PER_S] | again PORT TARGET | slow PORT TARGET | arrive PORT | come_back PORT EPOCH REVISION
 int load(const std::vector<std::string>& arguments) {
+  const std::string& what = arguments.at(0);
   const auto port = static_cast<std::uint16_t>(std::stoi(arguments.at(1)));
-  const bool watches = arguments.at(0) == "watch";
-  const nlohmann::json result = watches ? watch(port, std::stoi(arguments.at(2)), 2 * kPhase)
-                                        : fetch(port, arguments.at(2), arguments.at(0) == "again", kPhase);
+  json result;
+  if (what == "watch") result = watch(port, std::stoi(arguments.at(2)), 2 * kPhase);
+  if (what == "stall") result = stall(port, std::stoi(arguments.at(2)), kPhase);
+  if (what == "again") result = fetch(port, {.target = arguments.at(2), .conditional = true}, kPhase);
+  if (what == "get") {
+    const double per_s = arguments.size() > 3 ? std::stod(arguments[3]) : 0;
+    result = fetch(port, {.target = arguments.at(2), .per_s = per_s}, kPhase);
+  }
+  if (what == "slow") result = beside_slow_ones(port, arguments.at(2));
+  if (what == "arrive") result = arrive(port);
+  if (what == "come_back") result = come_back(port, arguments.at(2), std::stoull(arguments.at(3)));
   std::printf("%s\n", result.dump().c_str());
   return 0;
 }
 
-double fetches_per_s(const std::string& kind, std::uint16_t port, const std::string& target) {
-  return LoadProcess(kind + " " + std::to_string(port) + " " + target).result()["per_s"];
+json result_of(const std::string& load, std::uint16_t port, const std::string& more = {}) {
+  return LoadProcess(load + " " + std::to_string(port) + " " + more).result();
 }
 
-nlohmann::json measure(Hub& hub, SyntheticWalk& walk) {
-  nlohmann::json out = {{"viewers", kViewers}};
-  const std::uint16_t port = hub.port();
+/// 200 viewers on a map that grows at 20 Hz; then as many that read nothing.
+json measure_viewers(Hub& hub, SyntheticWalk& walk, int viewers) {
+  const std::string more = std::to_string(hub.port()) + " " + std::to_string(viewers);
   const double alone = map_rate(hub, walk, kPhase);
   const double before_kib = resident_kib();
-  LoadProcess viewers("watch " + std::to_string(port) + " " + std::to_string(kViewers));
+  LoadProcess watching("watch " + more);
   std::this_thread::sleep_for(kPhase / 2);
   const double watched = map_rate(hub, walk, kPhase);
-  out["idle_client_kib"] = std::max(0.0, resident_kib() - before_kib) / kViewers;
-  out["map_rate_ratio"] = watched / alone;
-  const nlohmann::json seen = viewers.result();
-  out["pose_p50_ms"] = seen["pose_p50_ms"];
-  out["pose_p99_ms"] = seen["pose_p99_ms"];
-  out["viewers_served"] = seen["viewers_served"];
-  const std::string tile = a_tile_target(port);
-  const BareServer bare;
-  const double bare_per_s = fetches_per_s("get", bare.port(), "/");
-  const double tiles_per_s = fetches_per_s("get", port, tile),
-               not_modified_per_s = fetches_per_s("again", port, tile);
-  out["bare_per_s"] = bare_per_s;
-  out["tile_get_per_s"] = tiles_per_s;
-  out["not_modified_per_s"] = not_modified_per_s;
-  out["tile_get_ratio"] = tiles_per_s / bare_per_s;
-  out["not_modified_ratio"] = not_modified_per_s / bare_per_s;
+  const double with_viewers_kib = resident_kib();
+  json out = watching.result();
+  out["publish_rate_ratio"] = watched / alone;
+  out["idle_client_kib"] = std::max(0.0, with_viewers_kib - before_kib) / viewers;
+  std::this_thread::sleep_for(seconds(1));
+  const double stalled_before_kib = resident_kib();
+  LoadProcess stalled("stall " + more);
+  map_rate(hub, walk, kPhase - seconds(1));
+  out["stalled_client_kib"] = std::max(0.0, resident_kib() - stalled_before_kib) / viewers;
+  stalled.result();
   return out;
 }
 
-int bench(const std::filesystem::path& json_file) {
+json measure_fetches(std::uint16_t port) {
+  const std::string tile = a_tile_target(port);
+  const BareServer bare;
+  const double bare_per_s = result_of("get", bare.port(), "/")["per_s"];
+  const double tiles_per_s = result_of("get", port, tile)["per_s"];
+  const double not_modified_per_s = result_of("again", port, tile)["per_s"];
+  const json half = result_of("get", port, tile + " " + std::to_string(tiles_per_s / 2));
+  json out = {{"bare_per_s", bare_per_s},
+              {"tile_get_per_s", tiles_per_s},
+              {"not_modified_per_s", not_modified_per_s},
+              {"tile_get_ratio", tiles_per_s / bare_per_s},
+              {"not_modified_ratio", not_modified_per_s / bare_per_s},
+              {"half_load_per_s", half["per_s"]},
+              {"half_load_p99_ms", half["p99_ms"]}};
+  out.update(result_of("slow", port, tile));
+  return out;
+}
+
+/// A map of 10,000 tiles: one who arrives, and one who comes back after 50 of them have changed.
+json measure_large_map() {
+  constexpr int kSide = 100, kChanged = 50;
+  FakeSession session;
   ServeOptions options;
   options.port = 0;
-  options.max_connections = options.max_connections_per_address = kViewers + 32;
+  Hub hub(options, session, {});
+  std::thread network([&] { hub.run(); });
+  const MapBegin map = large_map(kSide);
+  hub.begin(map);
+  json out = result_of("arrive", hub.port());
+  hub.publish(2, changed_tiles(map, kChanged, 2));
+  std::this_thread::sleep_for(milliseconds(500));
+  out.update(result_of("come_back", hub.port(), map.epoch + " 1"));
+  out["resume_changed"] = kChanged;
+  hub.drain("done");
+  network.join();
+  return out;
+}
+
+/// Frames a second of the real program, by its own counter.
+double frames_per_s(std::uint16_t port, seconds duration) {
+  const auto frames = [port] {
+    return json::parse(http(port, "GET", "/api/v1/session").body)["frames"].get<double>();
+  };
+  const double before = frames();
+  const auto start = steady_clock::now();
+  std::this_thread::sleep_for(duration);
+  return (frames() - before) / std::chrono::duration<double>(steady_clock::now() - start).count();
+}
+
+/// The real program on the simulated room (752x480 at 20 Hz), alone and with viewers.
+json measure_mapping(int viewers) {
+  const std::string connections = std::to_string(viewers + 32);
+  RunningProgram program({"--source", "sim:room", "--max-connections", connections,
+                          "--max-connections-per-address", connections});
+  std::this_thread::sleep_for(seconds(3));
+  const double alone = frames_per_s(program.port(), 2 * kPhase);
+  LoadProcess watching("watch " + std::to_string(program.port()) + " " + std::to_string(viewers));
+  std::this_thread::sleep_for(kPhase / 4);
+  const double watched = frames_per_s(program.port(), 2 * kPhase - kPhase / 2);
+  watching.result();
+  return {{"map_fps_alone", alone}, {"map_fps_watched", watched}, {"map_rate_ratio", watched / alone}};
+}
+
+json measure(int viewers) {
+  ServeOptions options;
+  options.port = 0;
+  options.max_connections = options.max_connections_per_address = std::max(viewers, 200) + 32;
   FakeSession session;
   Hub hub(options, session, {});
   SyntheticWalk walk;
   std::thread network([&] { hub.run(); });
   hub.begin(walk.begin("bench00000000001", "started"));
-  const nlohmann::json document = measure(hub, walk);
+  json out = {{"viewers", viewers}};
+  out.update(measure_viewers(hub, walk, viewers));
+  out.update(measure_fetches(hub.port()));
   hub.drain("done");
   network.join();
+  out.update(measure_large_map());
+  out.update(measure_mapping(viewers));
+  return out;
+}
+
+int bench(int viewers) {
+  const std::filesystem::path json_file = "build/bench/serve.json";
+  const json document = measure(viewers);
   for (const auto& [key, value] : document.items())
     std::printf("%-24s %s\n", key.c_str(), value.dump().c_str());
   std::filesystem::create_directories(json_file.parent_path());
@@ -138,9 +220,10 @@ int bench(const std::filesystem::path& json_file) {
 }  // namespace
 }  // namespace flogmap
 
+/// serve_bench [VIEWERS]
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   if (!arguments.empty() && arguments[0] == "--load")
     return flogmap::load({arguments.begin() + 1, arguments.end()});
-  return flogmap::bench(arguments.empty() ? "build/bench/serve.json" : arguments[0]);
+  return flogmap::bench(arguments.empty() ? 200 : std::stoi(arguments[0]));
 }
