@@ -108,7 +108,7 @@ bool Pipeline::read_frame() {
   {
     const std::scoped_lock lock(counters_mutex_);
     skipped_ = source_->skipped();
-    skew_ = source_->skew();
+    if (const auto skew = source_->skew()) counters_.skew = {skew->mean_ms, skew->largest_ms};
   }
   if (!frame) return false;
   ++frames_read_;
@@ -275,15 +275,10 @@ void Pipeline::report_status() {
 }
 
 StatusReport Pipeline::status() const {
-  StatusReport report;
-  SkippedFrames skipped;
-  {
-    const std::scoped_lock lock(counters_mutex_);
-    report = counters_;
-    skipped = skipped_;
-    report.skew_mean_ms = skew_ ? skew_->mean_ms : 0;
-    report.skew_largest_ms = skew_ ? skew_->largest_ms : 0;
-  }
+  std::unique_lock lock(counters_mutex_);
+  StatusReport report = counters_;
+  const SkippedFrames skipped = skipped_;
+  lock.unlock();
   const std::uint64_t unplaced = unplaced_frames_;
   report.tracked -= unplaced;
   report.lost += unplaced;
@@ -297,7 +292,7 @@ StatusReport Pipeline::status() const {
   }
   report.stages = statistics_.report();
   report.queues = {{"frames", frames_.size()}, {"views", map_.num_queued()}};
-  if (loops_) report.queues.push_back({"loop", loops_->num_queued()});
+  report.queues.push_back({"loop", loops_ ? loops_->num_queued() : 0});
   return report;
 }
 

@@ -113,7 +113,6 @@ class Pipeline {
   StatusReport counters_;
   std::atomic<std::uint64_t> unplaced_frames_ = 0;  // that wait for their place
   SkippedFrames skipped_;
-  std::optional<PairSkew> skew_;
   std::exception_ptr failure_;
   std::vector<std::jthread> threads_;
 };

@@ -50,6 +50,12 @@ struct QueueReport {
   std::uint64_t waiting = 0;
 };
 
+/// Between left and right picture, where the source knows it.
+struct SkewReport {
+  double mean_ms = 0;
+  double largest_ms = 0;
+};
+
 /// How the mapping does; published about twice a second.
 struct StatusReport {
   double frames_per_s = 0;
@@ -63,8 +69,7 @@ struct StatusReport {
   std::uint64_t skipped_frames = 0;  // could not be read
   std::vector<StageReport> stages;
   std::vector<QueueReport> queues;
-  double skew_mean_ms = 0;  // between left and right picture, where the source knows it
-  double skew_largest_ms = 0;
+  SkewReport skew;
   std::vector<std::string> warnings;  // in words, with what to do
   std::string alignment;              // given, gravity, ground, none
 };

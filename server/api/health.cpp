@@ -61,8 +61,8 @@ void collect(ServerState& state) {
               static_cast<double>(report.waiting_views));
   metrics.set("flogmap_loops", "Loops closed", static_cast<double>(report.loops));
   metrics.set("flogmap_skew_mean_seconds", "Between left and right picture, where it is known",
-              report.skew_mean_ms / 1000);
-  metrics.set("flogmap_skew_largest_seconds", "Likewise, the largest", report.skew_largest_ms / 1000);
+              report.skew.mean_ms / 1000);
+  metrics.set("flogmap_skew_largest_seconds", "Likewise, the largest", report.skew.largest_ms / 1000);
   for (const StageReport& stage : report.stages) metrics.set_stage(stage);
   collect_queues(state);
 }
