@@ -27,6 +27,6 @@ flogmap_target(flogmap EXECUTABLE
     commands/record.cpp
     commands/serve.cpp
     commands/simulate.cpp
-  PRIVATE board_calibration options pipeline hub map_store map_export trajectory CLI11::CLI11 nlohmann_json::nlohmann_json)
+  PRIVATE board_calibration options pipeline hub map_store map_export map_truth trajectory CLI11::CLI11 nlohmann_json::nlohmann_json)
 target_compile_definitions(flogmap PRIVATE FLOGMAP_VERSION="${PROJECT_VERSION}")
 set_target_properties(flogmap PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})

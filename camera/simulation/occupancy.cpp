@@ -158,15 +158,16 @@ Image<std::uint8_t> true_occupancy(const Scene& scene, double z_min_m, double z_
 SeenCells::SeenCells(const Truth& truth, double reach_m) : truth_(truth), reach_m_(reach_m) {
   const Eigen::Vector2i size = truth_size(truth);
   layers_.assign(truth.layer_bounds_m.size() - 1, Image<std::uint8_t>(size.x(), size.y(), 0));
+  surfaces_ = layers_;
 }
 
-void SeenCells::mark(const Vector3d& point) {
+void SeenCells::mark(Layers& layers, const Vector3d& point) const {
   const std::vector<double>& bounds = truth_.layer_bounds_m;
   if (point.z() < bounds.front() || point.z() >= bounds.back()) return;
   const auto layer = std::upper_bound(bounds.begin(), bounds.end(), point.z()) - bounds.begin() - 1;
   const Vector2d cell = (point.head<2>() - truth_.min_m) / truth_.cell_m;
   const int x = static_cast<int>(std::floor(cell.x())), y = static_cast<int>(std::floor(cell.y()));
-  if (layers_[layer].contains(x, y)) layers_[layer].at(x, y) = 255;
+  if (layers[layer].contains(x, y)) layers[layer].at(x, y) = 255;
 }
 
 void SeenCells::add(const Image<float>& inverse_depth, const StereoCamera& camera,
@@ -181,8 +182,11 @@ void SeenCells::add(const Image<float>& inverse_depth, const StereoCamera& camer
       const Vector3d direction = world_from_left.linear() * end / length;
       const double step = truth_.cell_m * 0.7;
       for (double r = 0; r < std::min(length, reach_m_); r += step)
-        mark(world_from_left.translation() + r * direction);
-      if (length < reach_m_) mark(world_from_left.translation() + (length + 1e-3) * direction);
+        mark(layers_, world_from_left.translation() + r * direction);
+      if (length >= reach_m_) continue;
+      const Vector3d hit = world_from_left.translation() + (length + 1e-3) * direction;
+      mark(layers_, hit);
+      mark(surfaces_, hit);
     }
   }
 }

@@ -16,8 +16,8 @@ namespace flogmap {
 
 inline constexpr double kHallWallM = 0.1;
 
-/// Which cells of every layer the camera could see: 255 where a ray to a visible point within `reach_m`
-/// passed or ended. Fed frame by frame.
+/// What of every layer the camera could see: cells that a ray to a visible point within `reach_m` passed or
+/// ended in, and, of these, the cells where one ended. Fed frame by frame. 255 or 0, row 0 at the lowest y.
 class SeenCells {
  public:
   explicit SeenCells(const Truth& truth, double reach_m = 5);
@@ -27,12 +27,14 @@ class SeenCells {
            const Eigen::Isometry3d& world_from_left);
 
   [[nodiscard]] const std::vector<Image<std::uint8_t>>& layers() const { return layers_; }
+  [[nodiscard]] const std::vector<Image<std::uint8_t>>& surfaces() const { return surfaces_; }
 
  private:
-  void mark(const Eigen::Vector3d& point);
+  using Layers = std::vector<Image<std::uint8_t>>;
+  void mark(Layers& layers, const Eigen::Vector3d& point) const;
   Truth truth_;
   double reach_m_;
-  std::vector<Image<std::uint8_t>> layers_;
+  Layers layers_, surfaces_;
 };
 
 /// Columns and rows of a truth picture.

@@ -47,6 +47,7 @@ void write_truth(const Scene& scene, const fs::path& folder, const SeenCells& se
     write_layer(folder / "truth" / ("layer_" + name + ".png"),
                 true_occupancy(scene, bounds[k], bounds[k + 1], end_s));
     write_layer(folder / "truth" / ("seen_" + name + ".png"), seen.layers()[k]);
+    write_layer(folder / "truth" / ("surface_" + name + ".png"), seen.surfaces()[k]);
     write_layer_description(folder / "truth" / ("layer_" + name + ".json"), scene.truth, k);
   }
 }

@@ -16,8 +16,9 @@ struct SimulationOptions {
 
 /// Renders a scene into a recording with its truth:
 ///   mav0/...                    pictures, calibration and exact poses, EuRoC layout; groundtruth.tum
-///   truth/layer_<k>.png, .json  occupancy at the end of the recording; truth/seen_<k>.png what the camera
-///   could see depth/<time>.pfm            Z of the left camera [m];  disparity/<time>.pfm [px]
+///   truth/layer_<k>.png, .json  occupancy at the end of the recording
+///   truth/seen_<k>.png, surface_<k>.png  what the camera could see of a layer; and where it saw a surface
+///   depth/<time>.pfm            Z of the left camera [m];  disparity/<time>.pfm [px]
 /// `progress` is told frames done and in all. Throws std::runtime_error naming what cannot be written.
 void simulate_recording(const Scene& scene, const std::filesystem::path& folder,
                         const SimulationOptions& options,

@@ -118,7 +118,7 @@ LayerScore score_layer(const MapSnapshot& map, int layer, const TruthLayer& trut
   const Mask truly_free = reachable_free(wide, options.path_m);
   const Mask near_solid = spread_largest(solid, reach), near_occupied = spread_largest(occupied, reach);
   const Mask near_free = spread_largest(truly_free, reach), beside_free = spread_largest(truly_free, 1);
-  const Mask visible = options.could_be_seen ? shifted_into(wide, truth, *options.could_be_seen) : seen;
+  const Mask visible = options.seen_surfaces ? shifted_into(wide, truth, *options.seen_surfaces) : seen;
   const Mask near_visible = spread_largest(visible, reach);
   const auto both = [&](const Mask& a, const Mask& b) {
     return mask_of(a, [&](std::size_t i) { return (a.pixels[i] & b.pixels[i]) != 0; });

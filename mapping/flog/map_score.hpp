@@ -26,8 +26,9 @@ struct ScoreOptions {
   Operators operators = Operators::algebraic;
   std::vector<Eigen::Vector2d> path_m;  // where the camera was: only free space connected to it counts;
                                         // empty: all of it
-  std::optional<Image<std::uint8_t>> could_be_seen;  // of the truth's size: not 0 where the camera could see;
-                                                     // without it, what the map says it has seen is taken
+  // Of the truth's size, not 0 where the camera could see a surface at this layer's heights. Only true
+  // surfaces near those count as seen; without it, those near anything that the map has seen.
+  std::optional<Image<std::uint8_t>> seen_surfaces;
 };
 
 /// Shares in [0, 1]; 0 where there is nothing to count.

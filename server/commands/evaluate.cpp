@@ -93,7 +93,7 @@ RunCommand add_evaluate(CLI::App& app) {
       ->type_name("FILE");
   app.add_option("--map", arguments->map, "instead: a stored map")->type_name("map.flog");
   app.add_option("--truth", arguments->truth,
-                 "true occupancy: layer_<k>.png and .json, seen_<k>.png if known")
+                 "true occupancy: layer_<k>.png and .json, surface_<k>.png or seen_<k>.png if known")
       ->type_name("DIR");
   app.add_option("--tolerance", arguments->tolerance_cells, "a surface may be so many cells off")
       ->check(CLI::Range(0, 100))

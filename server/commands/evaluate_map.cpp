@@ -1,13 +1,9 @@
 #include "server/commands/evaluate_map.hpp"
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "camera/picture_files.hpp"
-#include "mapping/flog/map_score.hpp"
+#include "mapping/map_truth.hpp"
 #include "server/map_store.hpp"
 #include "server/option_table.hpp"
 
@@ -15,40 +11,6 @@ namespace flogmap {
 namespace {
 
 using nlohmann::json;
-namespace fs = std::filesystem;
-
-Image<std::uint8_t> read_mask(const fs::path& file) {
-  const ReadPicture read = read_picture(file);
-  if (!read.problem.empty()) throw UsageError(read.problem);
-  if (read.picture.channels != 1 || read.picture.bits != 8) {
-    throw UsageError(file.string() + ": must be a grey picture with 8 bits");
-  }
-  Image<std::uint8_t> mask(read.picture.width, read.picture.height);
-  mask.pixels = read.picture.bytes;
-  return mask;
-}
-
-/// What the JSON beside a truth image says.
-struct TruthDescription {
-  double origin_x_m = 0, origin_y_m = 0;
-  double cell_size_m = 0;
-};
-
-TruthDescription read_description(const fs::path& file) {
-  std::ifstream in(file);
-  if (!in) throw UsageError(file.string() + ": cannot be read");
-  try {
-    const json document = json::parse(in);
-    const auto origin = document.at("origin").get<std::vector<double>>();
-    const double cell_size_m = document.at("cell").get<double>();
-    if (origin.size() != 2) throw UsageError(file.string() + ": origin must be [x, y] in metres");
-    if (!(cell_size_m > 0))
-      throw UsageError(file.string() + ": cell must be > 0 m, is " + document["cell"].dump());
-    return {origin[0], origin[1], cell_size_m};
-  } catch (const json::exception& error) {
-    throw UsageError(file.string() + ": " + error.what() + "; needs origin [x, y] and cell, metres");
-  }
-}
 
 json to_json(const ClassScore& score) {
   return {{"precision", score.precision}, {"recall", score.recall}, {"f1", score.f1}};
@@ -68,22 +30,23 @@ StoredMap load_input(const std::string& file) {
   }
 }
 
-LayerScore score(const StoredMap& map, const fs::path& folder, int layer, int tolerance_cells) {
-  const std::string name = "layer_" + std::to_string(layer);
-  const TruthDescription description = read_description(folder / (name + ".json"));
-  TruthLayer truth;
-  truth.solid = read_mask(folder / (name + ".png"));
-  truth.origin_x_m = description.origin_x_m;
-  truth.origin_y_m = description.origin_y_m;
-  truth.cell_size_m = description.cell_size_m;
+LayerTruth load_truth(const std::string& folder, int layer) {
+  try {
+    return read_layer_truth(folder, layer);
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
+  }
+}
+
+LayerScore score(const StoredMap& map, const std::string& folder, int layer, int tolerance_cells) {
+  const LayerTruth truth = load_truth(folder, layer);
   ScoreOptions options;
   options.tolerance_cells = tolerance_cells;
+  options.seen_surfaces = truth.seen_surfaces;
   for (const TrajectoryEntry& entry : map.trajectory) {
     options.path_m.emplace_back(entry.world_from_camera.translation().head<2>());
   }
-  const fs::path seen = folder / ("seen_" + std::to_string(layer) + ".png");
-  if (fs::exists(seen)) options.could_be_seen = read_mask(seen);
-  return score_layer(snapshot_of(map), layer, truth, options);
+  return score_layer(snapshot_of(map), layer, truth.solid, options);
 }
 
 }  // namespace

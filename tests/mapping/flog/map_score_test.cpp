@@ -96,10 +96,10 @@ TEST(MapScore, AsksForSurfacesThatCouldBeSeen) {
   canvas.fill({0, 0}, {50, 80}, kFreeCell);
   canvas.fill({-1, 0}, {0, 80}, kOccupiedCell);
   ScoreOptions options = from_the_middle();
-  options.could_be_seen = Image<std::uint8_t>(110, 90, 255);
+  options.seen_surfaces = Image<std::uint8_t>(110, 90, 255);
   const double asked_for_all = score_layer(canvas.map(), 0, room(), options).occupied.recall;
-  options.could_be_seen = Image<std::uint8_t>(110, 90, 0);
-  for (int y = 10; y < 80; ++y) options.could_be_seen->at(5, y) = 255;
+  options.seen_surfaces = Image<std::uint8_t>(110, 90, 0);
+  for (int y = 10; y < 80; ++y) options.seen_surfaces->at(5, y) = 255;
   EXPECT_LT(asked_for_all, 0.4);
   EXPECT_EQ(score_layer(canvas.map(), 0, room(), options).occupied.recall, 1);
 }
