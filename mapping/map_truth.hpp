@@ -13,13 +13,13 @@ namespace flogmap {
 /// One layer of a world: where solids are, and where the camera could see a surface, if that is known.
 struct LayerTruth {
   TruthLayer solid;
-  double low_m = 0, high_m = 0;  // its heights; 0, 0 if the files do not say
+  double low_m = 0, high_m = 0;                      // its heights; 0, 0 if the files do not say
   std::optional<Image<std::uint8_t>> seen_surfaces;  // of the same size
 };
 
 /// Reads layer_<k>.png (not 0 = solid, row 0 at the lowest y), layer_<k>.json (`origin` [x, y], `cell` and,
-/// if there, `z` [low, high]; metres) and, if there is one, surface_<k>.png, else seen_<k>.png. Throws std::runtime_error naming file, field and what is
-/// allowed.
+/// if there, `z` [low, high]; metres) and, if there is one, surface_<k>.png, else seen_<k>.png. Throws
+/// std::runtime_error naming file, field and what is allowed.
 [[nodiscard]] LayerTruth read_layer_truth(const std::filesystem::path& folder, int layer);
 
 }  // namespace flogmap

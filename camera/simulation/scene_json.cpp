@@ -99,6 +99,21 @@ void read_cylinder(JsonFields fields, Solid& solid) {
   fields.done();
 }
 
+/// A plane is a board, a millimetre thick behind its front.
+void read_plane(JsonFields fields, Solid& solid) {
+  constexpr double kThick_m = 0.001;
+  const std::vector<double> size_m = fields.numbers("size_m", 2);
+  if (!(size_m[0] > 0 && size_m[1] > 0)) fields.fail("size_m", "[width, height] above 0");
+  const Vector3d facing = fields.vector("facing").normalized();
+  if (!(facing.norm() > 0.5)) fields.fail("facing", "a direction");
+  const bool flat = std::abs(facing.z()) > 1 - 1e-9;
+  const Vector3d x = flat ? Vector3d::UnitX() : Vector3d(facing.cross(Vector3d::UnitZ()).normalized());
+  solid.size_m = {size_m[0], kThick_m, size_m[1]};
+  solid.world_from_solid.linear() << x, facing, x.cross(facing);
+  solid.world_from_solid.translation() = fields.vector("at") - kThick_m / 2 * facing;
+  fields.done();
+}
+
 void read_mesh(JsonFields fields, const std::string& folder, Solid& solid) {
   solid.kind = SolidKind::mesh;
   const double scale = fields.number("scale", 1, 1e-6, 1e6);
@@ -133,10 +148,12 @@ Solid read_solid(JsonFields fields, const MaterialIndex& materials, const std::s
     read_box(fields.object("hall"), solid);
   } else if (fields.has("cylinder")) {
     read_cylinder(fields.object("cylinder"), solid);
+  } else if (fields.has("plane")) {
+    read_plane(fields.object("plane"), solid);
   } else if (fields.has("mesh")) {
     read_mesh(fields.object("mesh"), folder, solid);
   } else {
-    throw std::runtime_error(fields.place() + " must have one of box, hall, cylinder, mesh");
+    throw std::runtime_error(fields.place() + " must have one of box, hall, cylinder, plane, mesh");
   }
   solid.side = material_of(fields, "material", materials, 0);
   solid.top = material_of(fields, "top", materials, solid.side);

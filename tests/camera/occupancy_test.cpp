@@ -41,6 +41,21 @@ TEST(Occupancy, OnlyWhatReachesIntoTheLayerCounts) {
   EXPECT_EQ(occupied(true_occupancy(scene, 0.55, 0.6, 0)), 10);  // wholly inside
 }
 
+TEST(Occupancy, APlaneIsWhereItsFrontIsAndAMillimetreBehind) {
+  const Scene wall = with_solids(
+      R"({"plane": {"at": [0.45, 0.1, 0.5], "size_m": [0.6, 0.4], "facing": [-1, 0, 0]}, "material": "m"})");
+  const Image<std::uint8_t> layer = true_occupancy(wall, 0.1, 0.9, 0);
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 20; ++x)
+      EXPECT_EQ(layer.at(x, y) == 255, x == 14 && y >= 8 && y < 14) << x << ' ' << y;
+  }
+  EXPECT_EQ(occupied(true_occupancy(wall, 0.71, 0.9, 0)), 0);  // it ends at 0.7
+  const Scene floor = with_solids(
+      R"({"plane": {"at": [0.25, 0.35, 0.5], "size_m": [0.3, 0.1], "facing": [0, 0, 1]}, "material": "m"})");
+  EXPECT_EQ(occupied(true_occupancy(floor, 0.4999, 0.6, 0)), 3 * 1);
+  EXPECT_EQ(occupied(true_occupancy(floor, 0.5, 0.6, 0)), 0);  // nothing above its front
+}
+
 TEST(Occupancy, ATurnedBoxIsTheCellsItsOutlineMeets) {
   const Scene scene = with_solids(
       R"({"box": {"at": [0.03, 0.02, 0], "size_m": [0.9, 0.5, 1], "yaw_deg": 30}, "material": "m"})");
@@ -109,7 +124,9 @@ TEST(SeenCells, AreThoseBetweenTheCameraAndWhatItSees) {
   const Image<std::uint8_t>& layer = seen.layers()[0];
   for (int x = 0; x <= 12; ++x) EXPECT_EQ(layer.at(x, 10), 255) << x;
   for (int x = 13; x < 20; ++x) EXPECT_EQ(layer.at(x, 10), 0) << x;
-  EXPECT_EQ(layer.at(3, 2), 0);  // out of view
+  EXPECT_EQ(layer.at(3, 2), 0);                             // out of view
+  const Image<std::uint8_t>& surface = seen.surfaces()[0];  // where rays ended
+  for (int x = 0; x < 20; ++x) EXPECT_EQ(surface.at(x, 10), x == 12 ? 255 : 0) << x;
 }
 
 }  // namespace

@@ -46,4 +46,8 @@ Report bayesian_grid(Workshop& workshop);
 Report paper_mode(Workshop& workshop);
 Report speed(Workshop& workshop);
 
+/// Share of flat walls `near_m` ahead, seen exactly at 60 places within one cell of 20 mm, that are in the
+/// map.
+[[nodiscard]] double walls_found(const StereoCamera& camera, double near_m, bool paper_mode);
+
 }  // namespace flogmap::experiments

@@ -41,8 +41,8 @@ Axis axis_over(double low, double high, double paper_low, double paper_high) {
 
 std::string label(double x, double y, const std::string& anchor, const std::string& words,
                   const std::string& more = "") {
-  return "<text x=\"" + text(x, 1) + "\" y=\"" + text(y, 1) + "\" text-anchor=\"" + anchor + "\"" + more + ">" +
-         words + "</text>\n";
+  return "<text x=\"" + text(x, 1) + "\" y=\"" + text(y, 1) + "\" text-anchor=\"" + anchor + "\"" + more +
+         ">" + words + "</text>\n";
 }
 
 std::string line(double x1, double y1, double x2, double y2, const std::string& colour) {
@@ -95,9 +95,10 @@ void write_chart(const std::filesystem::path& file, const LineChart& chart) {
   if (chart.from_zero) box.extend(Eigen::Vector2d(box.min().x(), 0));
   const Axis x = axis_over(box.min().x(), box.max().x(), kLeft, kWidth - kRight);
   const Axis y = axis_over(box.min().y(), box.max().y(), kHeight - kBottom, kTop);
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 640 360\" width=\"640\" "
-                    "font-family=\"sans-serif\" font-size=\"12\">\n"
-                    "<rect width=\"640\" height=\"360\" fill=\"#fff\"/>\n";
+  std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 640 360\" width=\"640\" "
+      "font-family=\"sans-serif\" font-size=\"12\">\n"
+      "<rect width=\"640\" height=\"360\" fill=\"#fff\"/>\n";
   svg += label(kLeft, 20, "start", chart.title, " font-weight=\"bold\"") + grid_of(x, y);
   svg += label((kLeft + kWidth) / 2, kHeight - 10, "middle", chart.x_label);
   svg += label(14, kHeight / 2, "middle", chart.y_label, " transform=\"rotate(-90 14 180)\"");

@@ -23,6 +23,15 @@ constexpr Experiment kExperiments[] = {
     {"side_widths", side_widths},
     {"hidden_sides", hidden_sides},
     {"layer_heights", layer_heights},
+    {"hand_held", hand_held},
+    {"segment_filter", segment_filter},
+    {"row_steps", row_steps},
+    {"table_layers", table_layers},
+    {"removed_box", removed_box},
+    {"repeated_views", repeated_views},
+    {"bayesian_grid", bayesian_grid},
+    {"paper_mode", paper_mode},
+    {"speed", speed},
 };
 
 constexpr const char* kIntroduction = R"(# The paper's experiments, reproduced and extended

@@ -50,12 +50,14 @@ void write_beside(const std::filesystem::path& file, const std::vector<GreyImage
     width += image.width * zoom + kGap;
     height = std::max(height, image.height * zoom);
   }
-  Picture sheet{width, height, 1, 8, std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height), 160)};
+  Picture sheet{width, height, 1, 8,
+                std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height), 160)};
   int left = 0;
   for (const GreyImage& image : images) {
     for (int y = 0; y < image.height * zoom; ++y) {
       for (int x = 0; x < image.width * zoom; ++x) {
-        sheet.bytes[std::size_t(y) * std::size_t(width) + std::size_t(left + x)] = image.at(x / zoom, y / zoom);
+        sheet.bytes[std::size_t(y) * std::size_t(width) + std::size_t(left + x)] =
+            image.at(x / zoom, y / zoom);
       }
     }
     left += image.width * zoom + kGap;

@@ -1,5 +1,6 @@
 #include "tests/experiments/passage.hpp"
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -28,7 +29,9 @@ FrontEnd make_front_end(const StereoSource& source, const TruePoses& poses, cons
 class Collector {
  public:
   Collector(const StereoSource& source, TruePoses poses, const PassageOptions& options)
-      : poses_(std::move(poses)), front_end_(make_front_end(source, poses_, options)) {
+      : poses_(std::move(poses)),
+        front_end_(make_front_end(source, poses_, options)),
+        every_frame_(options.every_frame) {
     passage_.camera = front_end_.camera();
     passage_.max_disparity_px = front_end_.max_disparity_px();
   }
@@ -40,6 +43,12 @@ class Collector {
     for (const TrajectoryEntry& entry : result.path) {
       passage_.estimate.poses.push_back({entry.timestamp_ns, entry.world_from_camera});
     }
+    if (every_frame_) {
+      result.views.clear();
+      if (result.world_from_camera) {
+        result.views.push_back({frame.timestamp_ns, *result.world_from_camera, *result.disparity, {}, 0});
+      }
+    }
     for (View& view : result.views) {
       passage_.true_poses.push_back(poses_.at(view.timestamp_ns));
       view.left = {};
@@ -49,11 +58,20 @@ class Collector {
     passage_.mean_times.odometry_ms += result.times.odometry_ms;
   }
 
+  /// Of the frame just taken, if it became a view.
+  void keep_exact(const Image<float>& inverse_depth) {
+    if (passage_.exact.size() == passage_.views.size()) return;
+    passage_.exact.push_back({inverse_depth});
+    const double f_t = passage_.camera.focal_px * passage_.camera.baseline_m;
+    for (float& d : passage_.exact.back().px.pixels) d = d > 0 ? static_cast<float>(f_t * d) : std::nanf("");
+  }
+
   [[nodiscard]] const Passage& passage() const { return passage_; }
 
   Passage finish(std::vector<LayerTruth> layers, const std::vector<Image<std::uint8_t>>& seen_surfaces) {
     passage_.layers = std::move(layers);
-    for (std::size_t k = 0; k < seen_surfaces.size(); ++k) passage_.layers[k].seen_surfaces = seen_surfaces[k];
+    for (std::size_t k = 0; k < seen_surfaces.size(); ++k)
+      passage_.layers[k].seen_surfaces = seen_surfaces[k];
     const auto n = static_cast<double>(std::max<std::int64_t>(1, passage_.num_frames));
     passage_.mean_times.disparity_ms /= n;
     passage_.mean_times.odometry_ms /= n;
@@ -63,6 +81,7 @@ class Collector {
  private:
   TruePoses poses_;
   FrontEnd front_end_;
+  bool every_frame_;
   Passage passage_;
 };
 
@@ -118,6 +137,7 @@ Passage pass_scene(const Scene& scene, const PassageOptions& options) {
   while (const auto frame = source.next()) {
     seen.add(source.true_inverse_depth(), scene.camera, *source.true_pose(frame->timestamp_ns));
     collector.take(*frame);
+    if (options.keep_exact) collector.keep_exact(source.true_inverse_depth());
   }
   const double end_s = static_cast<double>(bounded.num_frames - 1) / scene.rate_hz;
   return collector.finish(true_layers(scene, end_s), seen.surfaces());
@@ -150,6 +170,12 @@ Passage pass_recording(const std::filesystem::path& folder, const PassageOptions
 std::vector<View> at_true_poses(const Passage& passage) {
   std::vector<View> views = passage.views;
   for (std::size_t i = 0; i < views.size(); ++i) views[i].world_from_camera = passage.true_poses[i];
+  return views;
+}
+
+std::vector<View> with_exact_disparity(const Passage& passage) {
+  std::vector<View> views = at_true_poses(passage);
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].disparity = passage.exact[i];
   return views;
 }
 

@@ -16,10 +16,12 @@ namespace flogmap::experiments {
 
 struct PassageOptions {
   StereoOptions stereo;
-  double view_translation_m = 0.08;  // 4 cells of 20 mm; tiny: every frame becomes a view
+  double view_translation_m = 0.08;  // 4 cells of 20 mm
+  bool every_frame = false;          // a view is kept of every frame instead, moved or not
+  bool keep_exact = false;           // of a scene: exact disparities beside the measured ones
   bool with_odometry = true;         // else the views stand where the truth says
   std::int64_t max_frames = 0;       // 0: all, or one round of a scene
-  double reach_m = 5;            // surfaces farther than this do not count as seen
+  double reach_m = 5;                // surfaces farther than this do not count as seen
   std::uint64_t seed = 1;
 };
 
@@ -27,9 +29,10 @@ struct PassageOptions {
 struct Passage {
   StereoCamera camera;
   double max_disparity_px = 0;
-  std::vector<View> views;      // estimated poses, the first being the true one
-  std::vector<SE3> true_poses;  // of the views: world_from_camera
-  Trajectory estimate, truth;   // of every tracked frame; of every frame
+  std::vector<View> views;            // estimated poses, the first being the true one
+  std::vector<SE3> true_poses;        // of the views: world_from_camera
+  std::vector<DisparityImage> exact;  // of the views, if asked for: what a perfect matcher would say
+  Trajectory estimate, truth;         // of every tracked frame; of every frame
   std::vector<LayerTruth> layers;
   std::int64_t num_frames = 0;
   StageTimes mean_times;
@@ -45,5 +48,8 @@ struct Passage {
 
 /// The same views where they truly were.
 [[nodiscard]] std::vector<View> at_true_poses(const Passage& passage);
+
+/// And with exact disparities instead of measured ones.
+[[nodiscard]] std::vector<View> with_exact_disparity(const Passage& passage);
 
 }  // namespace flogmap::experiments

@@ -63,8 +63,7 @@ LayerScore score_of(const MapSnapshot& map, int layer, const LayerTruth& truth, 
 std::vector<LayerScore> scores_of(const MapSnapshot& map, const Passage& passage, int tolerance_cells) {
   std::vector<LayerScore> scores;
   for (std::size_t k = 0; k < passage.layers.size(); ++k) {
-    scores.push_back(
-        score_of(map, static_cast<int>(k), passage.layers[k], passage.truth, tolerance_cells));
+    scores.push_back(score_of(map, static_cast<int>(k), passage.layers[k], passage.truth, tolerance_cells));
   }
   return scores;
 }
@@ -93,6 +92,18 @@ LayerTruth fused(const std::vector<LayerTruth>& layers) {
   return one;
 }
 
+MapSnapshot with_threshold(MapSnapshot map, float threshold) {
+  for (auto& [index, tile] : map.tiles) {
+    auto answers = std::make_shared<Tile>(*tile);
+    for (Cell& cell : answers->cells) {
+      const bool occupied = map_value(Operators::algebraic, mu_E(cell), mu_O(cell), 1) >= threshold;
+      cell = occupied ? Cell{0, 65535, cell.rays, 0} : Cell{65535, 0, cell.rays, 0};
+    }
+    tile = answers;
+  }
+  return map;
+}
+
 Spikes spikes_in(const MapSnapshot& map, int layer, const TruthLayer& truth, double away_m) {
   const Image<float> distance = distance_to_blocked(truth.solid);
   Image<std::uint8_t> cells(truth.solid.width, truth.solid.height, 0);
@@ -102,8 +113,7 @@ Spikes spikes_in(const MapSnapshot& map, int layer, const TruthLayer& truth, dou
       if (distance.at(x, y) * truth.cell_size_m <= away_m) continue;
       const CellIndex cell = cell_at(map.info.grid, truth.origin_x_m + (x + 0.5) * truth.cell_size_m,
                                      truth.origin_y_m + (y + 0.5) * truth.cell_size_m);
-      const CellClass answer =
-          classify(Operators::algebraic, cell_in(map, cell, layer), map.info.min_rays);
+      const CellClass answer = classify(Operators::algebraic, cell_in(map, cell, layer), map.info.min_rays);
       if (answer != CellClass::occupied) continue;
       cells.at(x, y) = 255;
       ++spikes.cells;

@@ -42,6 +42,9 @@ inline double mean_free_f1(const std::vector<LayerScore>& scores) {
 [[nodiscard]] MapSnapshot fused(const MapSnapshot& map);
 [[nodiscard]] LayerTruth fused(const std::vector<LayerTruth>& layers);
 
+/// The same map with plain answers: occupied where the map value with full confidence is `threshold` or more.
+[[nodiscard]] MapSnapshot with_threshold(MapSnapshot map, float threshold);
+
 /// Occupied cells in truly free space more than `away_m` from any solid of the truth.
 struct Spikes {
   int cells = 0;

@@ -21,9 +21,7 @@ double between_cells(const MapSnapshot& map, int layer, const Vector2d& p, const
   const double x = p.x() / a - 0.5, y = p.y() / a - 0.5;
   const auto x0 = static_cast<std::int32_t>(std::floor(x)), y0 = static_cast<std::int32_t>(std::floor(y));
   const double u = x - x0, v = y - y0;
-  const auto at = [&](int dx, int dy) {
-    return double{of_cell(cell_in(map, {x0 + dx, y0 + dy}, layer))};
-  };
+  const auto at = [&](int dx, int dy) { return double{of_cell(cell_in(map, {x0 + dx, y0 + dy}, layer))}; };
   return (1 - v) * ((1 - u) * at(0, 0) + u * at(1, 0)) + v * ((1 - u) * at(0, 1) + u * at(1, 1));
 }
 
@@ -46,25 +44,21 @@ SideProfile profile_of(const MapSnapshot& map, int layer, const Side& side) {
   const Vector2d along = side.to_m - side.from_m;
   const Vector2d outwards = Vector2d(-along.y(), along.x()).normalized();
   const float N_K = map.info.full_confidence_rays[layer];
-  SideProfile mean;
-  int count = 0;
-  for (double share = 0.25; share <= 0.751; share += 0.05, ++count) {
-    const Vector2d foot = side.from_m + share * along;
-    std::vector<double> values;
-    for (double s = -kAcross_m; s <= kAcross_m; s += kStep_m) {
-      values.push_back(between_cells(map, layer, foot + s * outwards, full_value));
+  const auto K_of = [&](const Cell& cell) { return confidence(cell, N_K); };
+  constexpr int kFeet = 21;
+  std::vector<double> values, confidences;
+  for (double s = -kAcross_m; s <= kAcross_m; s += kStep_m) {
+    double value = 0, K = 0;
+    for (int foot = 0; foot < kFeet; ++foot) {
+      const Vector2d p = side.from_m + (0.25 + 0.5 * foot / (kFeet - 1)) * along + s * outwards;
+      value += between_cells(map, layer, p, full_value) / kFeet;
+      K += between_cells(map, layer, p, K_of) / kFeet;
     }
-    const auto peak = static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
-    const Vector2d at_peak = foot + (static_cast<double>(peak) * kStep_m - kAcross_m) * outwards;
-    mean.width_m += half_width_steps(values, peak) * kStep_m;
-    mean.peak += values[peak];
-    const double K =
-        between_cells(map, layer, at_peak, [&](const Cell& cell) { return confidence(cell, N_K); });
-    mean.confidence += K;
-    mean.visible_peak += K * values[peak];
+    values.push_back(value), confidences.push_back(K);
   }
-  mean.width_m /= count, mean.peak /= count, mean.confidence /= count, mean.visible_peak /= count;
-  return mean;
+  const auto peak = static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
+  return {half_width_steps(values, peak) * kStep_m, values[peak], values[peak] * confidences[peak],
+          confidences[peak]};
 }
 
 }  // namespace flogmap::experiments

@@ -12,7 +12,7 @@ struct Side {
   Eigen::Vector2d from_m, to_m;
 };
 
-/// Means along the middle of a side.
+/// The profile across a side, taken as the mean along its middle half.
 struct SideProfile {
   double width_m = 0;       // between the places where the map value, with full confidence, is half its peak
   double peak = 0;          // of the map value with full confidence,

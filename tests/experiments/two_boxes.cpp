@@ -45,9 +45,12 @@ Report two_boxes(Workshop& workshop) {
   Report report;
   report.title = "Two boxes, near and far";
   report.question =
-      "The paper's experiment 1: 320x240, one layer of 420 mm, 10 mm cells, 32 steps around two boxes from 1.1 m "
-      "(near) and alternately from 1.6 and 2.0 m (far), motion from the pictures alone. The loop error is that of "
-      "the 33rd view, which stands where the first stood. F1 of occupied cells: within 2 cells (20 mm) of the "
+      "The paper's experiment 1: 320x240, one layer of 420 mm, 10 mm cells, 32 steps around two boxes from "
+      "1.1 m "
+      "(near) and alternately from 1.6 and 2.0 m (far), motion from the pictures alone. The loop error is "
+      "that of "
+      "the 33rd view, which stands where the first stood. F1 of occupied cells: within 2 cells (20 mm) of "
+      "the "
       "surfaces seen.";
   Table table{{"recording", "paper's loop error", "loop error", "path error (rms)", "F1, estimated motion",
                "F1, true poses"},
@@ -63,8 +66,10 @@ Report two_boxes(Workshop& workshop) {
   report.figures = {drawn(workshop, "two-boxes-near"), drawn(workshop, "two-boxes-far")};
   report.findings =
       "Both loops close several times closer than the paper's, on this program's pictures and on another "
-      "renderer's, and the map with estimated motion is as good as the one with true poses. From far the sides "
-      "grow thick and run into each other, and what lies between the boxes is lost in haze: that is eq. (5), and "
+      "renderer's, and the map with estimated motion is as good as the one with true poses. From far the "
+      "sides "
+      "grow thick and run into each other, and what lies between the boxes is lost in haze: that is eq. (5), "
+      "and "
       "no better motion cures it.";
   return report;
 }

@@ -29,4 +29,7 @@ inline constexpr double kTwoBoxesRange_m = 2.5;  // the boxes, and not the room 
 /// Its side that faces the other box, a hand's breadth away.
 [[nodiscard]] Side hidden_side();
 
+/// Mean width of the open sides in a map of the views at their true poses.
+[[nodiscard]] double mean_side_width_m(const Passage& passage, double cell_size_m);
+
 }  // namespace flogmap::experiments

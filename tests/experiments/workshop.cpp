@@ -12,7 +12,8 @@ Workshop::Workshop(std::filesystem::path out, std::optional<std::filesystem::pat
 const Passage* Workshop::passage(const std::string& name) {
   if (const auto known = passages_.find(name); known != passages_.end()) return &known->second;
   const bool boxes = name.find("two-boxes") != std::string::npos;
-  const PassageOptions options = boxes ? two_boxes_passage_options() : PassageOptions{};
+  PassageOptions options = boxes ? two_boxes_passage_options() : PassageOptions{};
+  options.keep_exact = !boxes;
   const std::string recorded = "recorded ";
   if (!name.starts_with(recorded)) {
     return &passages_.emplace(name, pass_scene(load_scene(name), options)).first->second;

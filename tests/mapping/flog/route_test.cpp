@@ -208,7 +208,7 @@ TEST(Reachable, IsWhereAWayLeadsAndNothingElse) {
     std::uniform_real_distribution<double> x(0.05, 7.9), y(0.05, 3.9);
     for (int i = 0; i < 60; ++i) {
       RouteRequest request = way(1, 1, x(random), y(random), radius);
-      request.snap_m = 0;
+      request.start_snap_m = request.goal_snap_m = 0;
       const CellIndex cell{static_cast<int>(request.to_m.x() / 0.02),
                            static_cast<int>(request.to_m.y() / 0.02)};
       const bool reached = area.reached.grey.at(area.reached.pixel_x(cell), area.reached.pixel_y(cell)) != 0;
