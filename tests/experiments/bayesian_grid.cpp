@@ -137,9 +137,10 @@ std::string findings(const Outcome& o) {
          " at p = 0.5), keeps what is contradictory apart from what is unknown where the probabilities are "
          "sure of " +
          percent(o.sure_share, 0) + " of the very same cells, and after " + std::to_string(o.repeated) +
-         " repetitions of one view is sure of " + std::to_string(o.flog_wrong) + " wrong cells against " +
-         std::to_string(o.bayes_wrong) + ". The log-odds grid is better at free space (F1 " +
-         text(o.bayes_free, 3) + " against " + text(o.flog_free, 3) +
+         " repetitions of one view is surely wrong in " + std::to_string(o.flog_wrong) +
+         " of its cells against " + std::to_string(o.bayes_wrong) +
+         ". The log-odds grid is better at free space (F1 " + text(o.bayes_free, 3) + " against " +
+         text(o.flog_free, 3) +
          "), draws sharper walls, and with a threshold far from 0.5 comes close on obstacles too: that its "
          "numbers are no "
          "probabilities does not keep them from sorting cells well.";

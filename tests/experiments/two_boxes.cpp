@@ -66,11 +66,10 @@ Report two_boxes(Workshop& workshop) {
   report.figures = {drawn(workshop, "two-boxes-near"), drawn(workshop, "two-boxes-far")};
   report.findings =
       "Both loops close several times closer than the paper's, on this program's pictures and on another "
-      "renderer's, and the map with estimated motion is as good as the one with true poses. From far the "
-      "sides "
-      "grow thick and run into each other, and what lies between the boxes is lost in haze: that is eq. (5), "
-      "and "
-      "no better motion cures it.";
+      "renderer's, and "
+      "the map with estimated motion is nearly as good as the one with true poses. From far the sides are "
+      "thicker and the "
+      "gap between the boxes fills with haze: that is eq. (5), and no better motion cures it.";
   return report;
 }
 
