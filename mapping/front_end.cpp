@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mapping/stereo/row_offset.hpp"
 #include "mapping/stereo/segment_filter.hpp"
 
 namespace flogmap {
@@ -35,6 +36,7 @@ struct FrontEnd::Parts {
       : options(given_options),
         rectifier(std::move(given_rectifier)),
         matcher(make_matcher(options.stereo, rectifier.camera())),
+        rows(options.stereo.min_disparity, num_disparities()),
         odometry(options.odometry, rectifier.camera()),
         selector(options.views, rectifier.camera()),
         poses(std::move(given_poses)),
@@ -47,6 +49,7 @@ struct FrontEnd::Parts {
   }
 
   void start_anew() {
+    rows.reset();
     odometry.reset();
     selector.reset();
     waiting.clear();
@@ -70,6 +73,12 @@ struct FrontEnd::Parts {
     alignment = how;
   }
 
+  [[nodiscard]] int num_disparities() const {
+    const StereoOptions& stereo = options.stereo;
+    if (stereo.num_disparities > 0) return stereo.num_disparities;
+    return auto_num_disparities(rectifier.camera(), stereo.nearest_m, stereo.min_disparity);
+  }
+
   Tracking track(const FrontEndResult& result);
   void place(FrontEndResult& result);
   void deliver(FrontEndResult& result);
@@ -77,6 +86,7 @@ struct FrontEnd::Parts {
   FrontEndOptions options;
   Rectifier rectifier;
   std::unique_ptr<DisparityMatcher> matcher;
+  RowWatch rows;
   StereoOdometry odometry;
   ViewSelector selector;
   int segment = 0;  // of the last frame with a pose
@@ -102,6 +112,7 @@ FrontEndResult FrontEnd::process(const StereoFrame& frame) {
   LapTimer timer;
   result.rectified = std::make_shared<RectifiedFrame>(p.rectifier.rectify(frame));
   result.times.rectify_ms = timer.lap_ms();
+  result.row_offset_px = p.rows.add(*result.rectified);
   DisparityImage disparity = p.matcher->match(*result.rectified);
   remove_small_segments(disparity, min_segment_px(p.options.stereo, p.rectifier.camera()));
   result.disparity = std::make_shared<DisparityImage>(std::move(disparity));
@@ -180,11 +191,7 @@ void FrontEnd::continue_from(const SE3& world_from_camera) {
 const StereoCamera& FrontEnd::camera() const { return parts_->rectifier.camera(); }
 
 double FrontEnd::max_disparity_px() const {
-  const StereoOptions& stereo = parts_->options.stereo;
-  const int count = stereo.num_disparities > 0
-                        ? stereo.num_disparities
-                        : auto_num_disparities(camera(), stereo.nearest_m, stereo.min_disparity);
-  return stereo.min_disparity + count - 1;
+  return parts_->options.stereo.min_disparity + parts_->num_disparities() - 1;
 }
 
 std::string FrontEnd::alignment() const { return parts_->alignment; }

@@ -50,6 +50,7 @@ struct FrontEndResult {
   std::vector<TrajectoryEntry> path;     // poses known since the last frame: usually one; all of the first
                                          // seconds at once when the start is decided
   std::vector<View> views;               // likewise, of those that moved or turned enough
+  std::optional<double> row_offset_px;   // right rows lie so much lower than left ones; see RowWatch
   StageTimes times;
 };
 

@@ -1,7 +1,10 @@
 #include "server/pipeline.hpp"
 
+#include <cmath>
+#include <cstdio>
 #include <utility>
 
+#include "mapping/stereo/row_offset.hpp"
 #include "server/random_epoch.hpp"
 
 namespace flogmap {
@@ -15,6 +18,13 @@ constexpr const char* kPlaceUnknown =
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+std::string words_of_row_offset(double offset_px) {
+  char px[16];
+  std::snprintf(px, sizeof px, "%.1f", std::abs(offset_px));
+  return std::string("rows of the right picture lie ") + px + " px " + (offset_px > 0 ? "lower" : "higher") +
+         " than those of the left: the calibration does not fit the cameras any more; calibrate again";
 }
 
 }  // namespace
@@ -250,6 +260,8 @@ void Pipeline::report(const Captured& captured, FrontEndResult& result) {
     if (result.world_from_camera) put_into_map(timestamp_ns, result);
     counters_.warnings.clear();
     if (!result.tracking.reason.empty()) counters_.warnings.push_back(result.tracking.reason);
+    if (result.row_offset_px && std::abs(*result.row_offset_px) > kTolerableRowOffset_px)
+      counters_.warnings.push_back(words_of_row_offset(*result.row_offset_px));
   }
   TrackingReport tracked;
   tracked.timestamp_ns = timestamp_ns;

@@ -13,6 +13,7 @@
 #include "camera/recording_writer.hpp"
 #include "camera/rectifier.hpp"
 #include "mapping/stereo/disparity_matcher.hpp"
+#include "mapping/stereo/row_offset.hpp"
 #include "mapping/stereo/segment_filter.hpp"
 #include "server/commands/commands.hpp"
 #include "server/options.hpp"
@@ -21,6 +22,7 @@
 namespace flogmap {
 namespace {
 
+constexpr double kThinPercent = 25;      // fewer matches than this and something is wrong with the pair
 constexpr int kDefaultDisparities = 64;  // where no calibration tells how near things can be
 
 struct DisparityArguments {
@@ -87,6 +89,19 @@ double density_percent(const Image<float>& disparity) {
   return 100.0 * static_cast<double>(valid) / static_cast<double>(disparity.size());
 }
 
+/// A pair that is not rectified gives a thin, wrong disparity; better say so than leave the user to wonder.
+void warn_of_row_offset(const RectifiedFrame& pair, const DisparityArguments& arguments) {
+  const StereoOptions& stereo = arguments.stereo;
+  const int num_disparities = stereo.num_disparities > 0 ? stereo.num_disparities : kDefaultDisparities;
+  const auto offset = measure_row_offset(pair, stereo.min_disparity, num_disparities);
+  if (!offset || std::abs(offset->median_px) <= kTolerableRowOffset_px) return;
+  std::fprintf(stderr, "warning: rows of %s lie %.1f px %s than those of %s; %s\n", arguments.right.c_str(),
+               std::abs(offset->median_px), offset->median_px > 0 ? "lower" : "higher",
+               arguments.left.c_str(),
+               arguments.calibration.empty() ? "is the pair rectified? If not, name its --calibration"
+                                             : "the calibration does not fit these cameras: calibrate again");
+}
+
 int compute(DisparityArguments arguments) {
   if (arguments.out.empty()) throw UsageError("--out is missing; for instance --out D.pfm");
   StereoFrame frame{
@@ -101,6 +116,7 @@ int compute(DisparityArguments arguments) {
   if (arguments.stereo.num_disparities == 0 && !know_nearest)
     arguments.stereo.num_disparities = kDefaultDisparities;
   const RectifiedFrame rectified = rectifier.rectify(frame);
+  warn_of_row_offset(rectified, arguments);
   const auto matcher = make_matcher(arguments.stereo, rectifier.camera());
   const auto start = std::chrono::steady_clock::now();
   DisparityImage disparity = matcher->match(rectified);
@@ -112,6 +128,12 @@ int compute(DisparityArguments arguments) {
   write_picture_of(disparity, png);
   std::printf("%dx%d, density %.1f %%, %.1f ms; written: %s, %s\n", disparity.px.width, disparity.px.height,
               density_percent(disparity.px), ms, arguments.out.c_str(), png.c_str());
+  if (density_percent(disparity.px) < kThinPercent) {
+    std::fprintf(stderr, "warning: few pixels found a match. %s, and is %s really the left picture?\n",
+                 arguments.calibration.empty() ? "Is the pair rectified? If not, name its --calibration"
+                                               : "Does the calibration belong to these cameras",
+                 arguments.left.c_str());
+  }
   return 0;
 }
 
