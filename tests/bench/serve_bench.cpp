@@ -117,10 +117,11 @@ json measure_viewers(Hub& hub, SyntheticWalk& walk, int viewers) {
   out["publish_rate_ratio"] = watched / alone;
   out["idle_client_kib"] = std::max(0.0, with_viewers_kib - before_kib) / viewers;
   std::this_thread::sleep_for(seconds(1));
-  const double stalled_before_kib = resident_kib();
   LoadProcess stalled("stall " + more);
   map_rate(hub, walk, kPhase - seconds(1));
-  out["stalled_client_kib"] = std::max(0.0, resident_kib() - stalled_before_kib) / viewers;
+  // Against the time before any viewer, for memory that was given back inside the process does not show
+  // again.
+  out["stalled_client_kib"] = std::max(0.0, resident_kib() - before_kib) / viewers;
   stalled.result();
   return out;
 }
@@ -138,6 +139,7 @@ json measure_fetches(std::uint16_t port) {
               {"tile_get_ratio", tiles_per_s / bare_per_s},
               {"not_modified_ratio", not_modified_per_s / bare_per_s},
               {"half_load_per_s", half["per_s"]},
+              {"half_load_p50_ms", half["p50_ms"]},
               {"half_load_p99_ms", half["p99_ms"]}};
   out.update(result_of("slow", port, tile));
   return out;
