@@ -6,6 +6,17 @@
 namespace flogmap::experiments {
 namespace {
 
+constexpr const char* kQuestion =
+    "The paper's experiment 2: a hand-held walk with roll, motion from the pictures alone (no loop "
+    "closure), three "
+    "layers of 700 mm from 5 cm above the floor, 20 mm cells, everything at its default. corridor-loop is "
+    "two rooms "
+    "and a corridor; house-dev, by another renderer, has rolls up to 18 degrees, a plain panel and a "
+    "mirroring "
+    "table. The paper: \"obstacles and free space identified; object borders fuzzier than in experiment "
+    "1\". What could be seen of house-dev is taken from its measured depths, as the exact ones are not "
+    "known.";
+
 struct Walked {
   const char *passage, *name;
 };
@@ -39,21 +50,33 @@ WorldArea area_of(const TruthLayer& truth) {
           truth.origin_y_m + truth.solid.height * truth.cell_size_m};
 }
 
+Figure drawn(Workshop& workshop, const std::string& name, const Passage& passage, const MapSnapshot& map) {
+  const WorldArea area = area_of(passage.layers[0].solid);
+  const std::string file = "hand-held-" + name + ".png";
+  write_beside(workshop.file(file),
+               {true_map(fused(passage.layers).solid, area), visual_map(map, area, std::nullopt, true)}, 1);
+  return {file, name + ": the truth, the fused map with estimated motion"};
+}
+
+std::string findings(const MeanF1& f1) {
+  return "Obstacles and free space are found in every layer, and motion from the pictures costs nothing: the "
+         "mean F1 of corridor-loop is " +
+         text(f1.estimated, 3) + " with it and " + text(f1.given, 3) +
+         " with true poses. Borders are much fuzzier than around the boxes, since at 4 to 5 m a wall's "
+         "memberships reach 5 cells to each side, the matcher errs there by more than the 0.1 px of eq. (5) "
+         "(exact disparities would give " +
+         text(f1.exact, 3) +
+         ") and veils hang between things and what is behind them; and what fills only a few centimetres of "
+         "a 700 mm layer, as table tops and chair backs do in layer 1 of the house, is outvoted by the rays "
+         "above it and called free.";
+}
+
 }  // namespace
 
 Report hand_held(Workshop& workshop) {
   Report report;
   report.title = "Rooms, by hand";
-  report.question =
-      "The paper's experiment 2: a hand-held walk with roll, motion from the pictures alone (no loop "
-      "closure), three "
-      "layers of 700 mm from 5 cm above the floor, 20 mm cells, everything at its default. corridor-loop is "
-      "two rooms "
-      "and a corridor; house-dev, by another renderer, has rolls up to 18 degrees, a plain panel and a "
-      "mirroring "
-      "table. The paper: \"obstacles and free space identified; object borders fuzzier than in experiment "
-      "1\". What could be seen of house-dev is taken from its measured depths, as the exact ones are not "
-      "known.";
+  report.question = kQuestion;
   Table path{{"walk", "frames / views mapped", "length", "path error (rms)", "error at the end"}, {}};
   Table map{{"walk", "poses", "layer", "precision", "recall", "F1 occupied", "F1 free", "coverage",
              "free wrongly blocked", "occupied wrongly free"},
@@ -75,29 +98,10 @@ Report hand_held(Workshop& workshop) {
       f1.given = mean_occupied_f1(scores_of(given, *passage));
       f1.estimated = mean_occupied_f1(scores_of(estimated, *passage));
     }
-    const WorldArea area = area_of(passage->layers[0].solid);
-    const std::string file = std::string("hand-held-") + walked.name + ".png";
-    write_beside(
-        workshop.file(file),
-        {true_map(fused(passage->layers).solid, area), visual_map(estimated, area, std::nullopt, true)}, 1);
-    report.figures.push_back(
-        {file, std::string(walked.name) + ": the truth, the fused map with estimated motion"});
+    report.figures.push_back(drawn(workshop, walked.name, *passage, estimated));
   }
   report.tables = {std::move(path), std::move(map)};
-  report.findings =
-      "Obstacles and free space are found in every layer, and motion from the pictures costs nothing: the "
-      "mean F1 of "
-      "corridor-loop is " +
-      text(f1.estimated, 3) + " with it and " + text(f1.given, 3) +
-      " with true poses. Borders are much fuzzier than around the boxes, since at 4 to 5 m a wall's "
-      "memberships reach 5 "
-      "cells to each side, the matcher errs there by more than the 0.1 px of eq. (5) (exact disparities "
-      "would give " +
-      text(f1.exact, 3) +
-      ") and veils hang between things and what is behind them; and what fills only a few centimetres of a "
-      "700 mm layer, "
-      "as table tops and chair backs do in layer 1 of the house, is outvoted by the rays above it and called "
-      "free.";
+  report.findings = findings(f1);
   return report;
 }
 

@@ -8,6 +8,13 @@
 namespace flogmap::experiments {
 namespace {
 
+constexpr const char* kQuestion =
+    "A look down on the boxes of moving-box from 1.1 m, where floor and furniture fill the view: one layer "
+    "with and "
+    "without what is below and above the boxes, scored against the truth of [0.05, 0.75) m. The paper: "
+    "layers keep "
+    "out what does not matter to a robot of their height.";
+
 constexpr WorldArea kCircle{-1.2, -1.2, 1.2, 1.2};
 
 struct Heights {
@@ -20,12 +27,7 @@ struct Heights {
 Report layer_heights(Workshop& workshop) {
   Report report;
   report.title = "Space above and below is excluded by the layer";
-  report.question =
-      "A look down on the boxes of moving-box from 1.1 m, where floor and furniture fill the view: one layer "
-      "with and "
-      "without what is below and above the boxes, scored against the truth of [0.05, 0.75) m. The paper: "
-      "layers keep "
-      "out what does not matter to a robot of their height.";
+  report.question = kQuestion;
   PassageOptions options;
   options.with_odometry = false;
   options.max_frames = 250;  // one round

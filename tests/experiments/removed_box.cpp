@@ -12,6 +12,13 @@
 namespace flogmap::experiments {
 namespace {
 
+constexpr const char* kQuestion =
+    "moving-box: after one round around three boxes one of them is taken away and another is pushed; true "
+    "poses. N_f = "
+    "3 N_K is what bounds a cell's memory. Gone: less than a tenth of the box's cells are still called "
+    "occupied. "
+    "The count is of mapped views, all of them looking at the place.";
+
 constexpr double kRemovedAt_s = 26;  // in scene moving-box
 constexpr int kNever = -1;
 
@@ -69,12 +76,7 @@ Fading fading(const Passage& passage, double full_confidence_rays) {
 Report removed_box(Workshop& workshop) {
   Report report;
   report.title = "Forgetting: N_f and a box that was taken away";
-  report.question =
-      "moving-box: after one round around three boxes one of them is taken away and another is pushed; true "
-      "poses. N_f = "
-      "3 N_K is what bounds a cell's memory. Gone: less than a tenth of the box's cells are still called "
-      "occupied. "
-      "The count is of mapped views, all of them looking at the place.";
+  report.question = kQuestion;
   PassageOptions options;
   options.with_odometry = false;
   Passage passage = pass_scene(load_scene("moving-box"), options);

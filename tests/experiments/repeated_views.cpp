@@ -9,6 +9,13 @@
 namespace flogmap::experiments {
 namespace {
 
+constexpr const char* kQuestion =
+    "A camera with a noisy sensor (3 grey levels) stands still for 100 frames and then circles the two "
+    "boxes; true "
+    "poses. A view is added when the camera has moved by 4 cells, or always. Views from one place repeat "
+    "the same "
+    "errors of the matcher, so they add confidence without adding knowledge (section 2.2 of the paper).";
+
 constexpr int kStanding = 100;
 constexpr WorldArea kAroundBoxes{-0.7, -0.5, 0.7, 0.5};
 
@@ -31,21 +38,20 @@ int confidently_wrong(const MapSnapshot& map, const TruthLayer& truth) {
   return spikes_in(sure, 0, truth, 0.05).cells;
 }
 
+Passage standing_then_circling() {
+  PassageOptions options = two_boxes_passage_options();
+  options.with_odometry = false;
+  options.every_frame = true;
+  return pass_scene(two_boxes_after_standing(kStanding), options);
+}
+
 }  // namespace
 
 Report repeated_views(Workshop& workshop) {
   Report report;
   report.title = "Only views from new places";
-  report.question =
-      "A camera with a noisy sensor (3 grey levels) stands still for 100 frames and then circles the two "
-      "boxes; true "
-      "poses. A view is added when the camera has moved by 4 cells, or always. Views from one place repeat "
-      "the same "
-      "errors of the matcher, so they add confidence without adding knowledge (section 2.2 of the paper).";
-  PassageOptions options = two_boxes_passage_options();
-  options.with_odometry = false;
-  options.every_frame = true;
-  const Passage passage = pass_scene(two_boxes_after_standing(kStanding), options);
+  report.question = kQuestion;
+  const Passage passage = standing_then_circling();
   const auto first = passage.views.begin(), moving = first + kStanding;
   const std::pair<const char*, std::vector<View>> choices[] = {
       {"standing, the first view", {first, first + 1}},

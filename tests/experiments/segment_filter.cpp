@@ -12,6 +12,15 @@
 namespace flogmap::experiments {
 namespace {
 
+constexpr const char* kQuestion =
+    "Two boxes from near with a noisy sensor (4 grey levels), true poses, with and without removing "
+    "patches smaller "
+    "than 0.15 % of the picture (section 1.3 of the paper: nearly all spikes go). Each wrong patch of a "
+    "view is a spike "
+    "in what that view says; spikes of the map are groups of occupied cells more than 5 cm from every "
+    "solid, after all "
+    "33 views have had their say.";
+
 constexpr WorldArea kCircle{-1.5, -1.5, 1.5, 1.5};
 
 struct Patch {
@@ -86,14 +95,7 @@ FilterOutcome map_with_filter(MatcherKind matcher, double min_segment_fraction) 
 Report segment_filter(Workshop& workshop) {
   Report report;
   report.title = "The segmentation filter";
-  report.question =
-      "Two boxes from near with a noisy sensor (4 grey levels), true poses, with and without removing "
-      "patches smaller "
-      "than 0.15 % of the picture (section 1.3 of the paper: nearly all spikes go). Each wrong patch of a "
-      "view is a spike "
-      "in what that view says; spikes of the map are groups of occupied cells more than 5 cm from every "
-      "solid, after all "
-      "33 views have had their say.";
+  report.question = kQuestion;
   Table table{{"matcher", "filter", "spikes in the views", "pixels in them", "spikes in the map",
                "cells in them", "F1 occupied"},
               {}};

@@ -8,6 +8,15 @@
 namespace flogmap::experiments {
 namespace {
 
+constexpr const char* kQuestion =
+    "The same circle from six distances, with true poses: the width of the left box's three open sides at "
+    "half "
+    "the peak of the map value, beside 3 delta_l of eq. (5), which is the width at half maximum of the "
+    "triangle "
+    "of eq. (7) for a ray that meets the side at a right angle. With the paper's cells of 10 mm and with "
+    "cells of 5 mm, "
+    "which hide less of it. The paper's pictures show about 20 mm at 1.1 m and 40-50 mm at 1.8 m.";
+
 constexpr double kDepthOfSide_m = 0.13;  // sides stand this much nearer than the boxes' middle, on average
 
 struct Width {
@@ -39,14 +48,7 @@ double mean_side_width_m(const Passage& passage, double cell_size_m) {
 Report side_widths(Workshop& workshop) {
   Report report;
   report.title = "How thick a side is, against distance";
-  report.question =
-      "The same circle from six distances, with true poses: the width of the left box's three open sides at "
-      "half "
-      "the peak of the map value, beside 3 delta_l of eq. (5), which is the width at half maximum of the "
-      "triangle "
-      "of eq. (7) for a ray that meets the side at a right angle. With the paper's cells of 10 mm and with "
-      "cells of 5 mm, "
-      "which hide less of it. The paper's pictures show about 20 mm at 1.1 m and 40-50 mm at 1.8 m.";
+  report.question = kQuestion;
   Table table{{"distance", "10 mm cells", "5 mm cells", "3 delta_l"}, {}};
   Series coarse{"10 mm cells", {}}, fine{"5 mm cells", {}}, predicted{"3 delta_l, eq. (5)", {}};
   std::vector<Width> widths;

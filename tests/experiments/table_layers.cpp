@@ -7,6 +7,15 @@
 namespace flogmap::experiments {
 namespace {
 
+constexpr const char* kQuestion =
+    "A table (top from 0.72 to 0.76 m, a cardboard box on it) circled by a hand-held camera, true poses, "
+    "heights "
+    "0.05 to 1.5 m cut into layers in four ways. Fused: a column is occupied if any layer is. Scored "
+    "against the "
+    "truth of all heights together; \"free under the table\" is the share of the ground between its legs "
+    "that the "
+    "lowest layer calls free.";
+
 constexpr WorldArea kRoom{-2.8, -2.6, 2.8, 2.6};
 
 /// Share of the ground between the table's legs that a layer calls free.
@@ -33,29 +42,26 @@ struct Choice {
   std::vector<double> bounds_m;
 };
 
+std::vector<Choice> choices() {
+  return {{"one of 1.45 m", {0.05, 1.5}},
+          {"three even ones", even_layers(0.05, 1.5, 3)},
+          {"three: below, top, above", {0.05, 0.7, 0.78, 1.5}},
+          {"fifteen even ones", even_layers(0.05, 1.5, 15)}};
+}
+
 }  // namespace
 
 Report table_layers(Workshop& workshop) {
   Report report;
   report.title = "Layers fused against one tall layer";
-  report.question =
-      "A table (top from 0.72 to 0.76 m, a cardboard box on it) circled by a hand-held camera, true poses, "
-      "heights "
-      "0.05 to 1.5 m cut into layers in four ways. Fused: a column is occupied if any layer is. Scored "
-      "against the "
-      "truth of all heights together; \"free under the table\" is the share of the ground between its legs "
-      "that the "
-      "lowest layer calls free.";
+  report.question = kQuestion;
   const Passage& passage = *workshop.passage("table");
   const std::vector<View> views = at_true_poses(passage);
   const LayerTruth truth = fused(passage.layers);
   Table table{{"layers", "F1 of obstacles, fused", "precision", "recall", "free under the table"}, {}};
   std::vector<GreyImage> images{true_map(truth.solid, kRoom)};
   std::vector<double> f1, recall;
-  for (const Choice& choice :
-       {Choice{"one of 1.45 m", {0.05, 1.5}}, Choice{"three even ones", even_layers(0.05, 1.5, 3)},
-        Choice{"three: below, top, above", {0.05, 0.7, 0.78, 1.5}},
-        Choice{"fifteen even ones", even_layers(0.05, 1.5, 15)}}) {
+  for (const Choice& choice : choices()) {
     FlogOptions options;
     options.grid.layer_bounds_m = choice.bounds_m;
     const MapSnapshot map = map_of(passage, views, options), one = fused(map);
