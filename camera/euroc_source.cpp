@@ -44,14 +44,13 @@ void pair_by_time(const std::vector<TimedFile>& left, const std::vector<TimedFil
   constexpr double kMsPerNs = 1e-6;
   std::size_t l = 0, r = 0;
   PairSkew all;
+  all.allowed_ms = kMsPerNs * static_cast<double>(kToleranceNs);
   while (l < left.size() || r < right.size()) {
     const bool both = l < left.size() && r < right.size();
     const std::int64_t skew = both ? left[l].timestamp_ns - right[r].timestamp_ns : 0;
     if (both && std::abs(skew) <= kToleranceNs) {
       list.pairs.push_back({left[l].timestamp_ns, left[l].file, right[r].file});
-      const double skew_ms = kMsPerNs * static_cast<double>(std::abs(skew));
-      all.mean_ms += (skew_ms - all.mean_ms) / static_cast<double>(list.pairs.size());
-      all.largest_ms = std::max(all.largest_ms, skew_ms);
+      all.histogram.add(skew);
       ++l, ++r;
     } else if (l < left.size() && (!both || skew < 0)) {
       list.skip(left[l++].file.string() + ": no right picture of that time");

@@ -3,22 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 #include <utility>
 
 namespace flogmap {
-
-void SkewHistogram::add(std::int64_t skew_ns) {
-  constexpr double kMsPerNs = 1e-6;
-  const double ms = std::abs(static_cast<double>(skew_ns)) * kMsPerNs;
-  const auto bin = std::lower_bound(kUpperMs.begin(), kUpperMs.end(), ms) - kUpperMs.begin();
-  ++counts[static_cast<std::size_t>(bin)];
-  sum_ms += ms;
-}
-
-std::int64_t SkewHistogram::total() const {
-  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
-}
 
 void FramePairing::drop_oldest(Side side) {
   waiting(side).pop_front();

@@ -2,13 +2,13 @@
 // cameras into step. Pure: times come in as numbers, so tests need neither cameras nor clocks.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
 
 #include "camera/image.hpp"
+#include "camera/pair_skew.hpp"
 
 namespace flogmap {
 
@@ -23,16 +23,6 @@ struct TimedPicture {
 struct PairedPictures {
   TimedPicture left, right;
   [[nodiscard]] std::int64_t skew_ns() const { return right.timestamp_ns - left.timestamp_ns; }
-};
-
-/// How far apart the two pictures of a pair were taken: counts per bin of |skew|.
-struct SkewHistogram {
-  static constexpr std::array<double, 9> kUpperMs{0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50};
-  std::array<std::int64_t, kUpperMs.size() + 1> counts{};  // the last one: beyond all bounds
-  double sum_ms = 0;                                       // of |skew|
-
-  void add(std::int64_t skew_ns);
-  [[nodiscard]] std::int64_t total() const;
 };
 
 struct PairingCounts {

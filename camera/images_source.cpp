@@ -14,7 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kPeriodNs = 100'000'000;
 constexpr std::int64_t kSmallestTime = 1'000'000'000'000'000;  // 16 digits
 
 struct NumberedFile {
@@ -58,7 +57,7 @@ std::vector<NumberedFile> matching_files(const std::string& pattern, bool& by_or
 
 }  // namespace
 
-PicturePairList list_images(const std::string& globs) {
+PicturePairList list_images(const std::string& globs, double rate_hz) {
   const std::size_t comma = globs.find(',');
   if (comma == std::string::npos || globs.find(',', comma + 1) != std::string::npos) {
     throw std::runtime_error("images: must be LEFT_GLOB,RIGHT_GLOB, got '" + globs + "'");
@@ -70,6 +69,8 @@ PicturePairList list_images(const std::string& globs) {
   if (by_order && !left_by_order) left = matching_files(globs.substr(0, comma), by_order);
 
   PicturePairList list;
+  const bool has_times = left.front().number >= kSmallestTime;
+  if (!has_times) list.assumed = "the names hold no times; " + assumed_rate(rate_hz);
   std::size_t l = 0, r = 0;
   while (l < left.size() || r < right.size()) {
     if (r == right.size() || (l < left.size() && left[l].number < right[r].number)) {
@@ -77,8 +78,7 @@ PicturePairList list_images(const std::string& globs) {
     } else if (l == left.size() || right[r].number < left[l].number) {
       list.skip(right[r++].file.string() + ": no left picture of that number");
     } else {
-      const bool is_time = left.front().number >= kSmallestTime;
-      const std::int64_t time_ns = is_time ? left[l].number : static_cast<std::int64_t>(l) * kPeriodNs;
+      const std::int64_t time_ns = has_times ? left[l].number : time_at(l, rate_hz);
       list.pairs.push_back({time_ns, left[l++].file, right[r++].file});
     }
   }

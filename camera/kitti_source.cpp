@@ -2,20 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <fstream>
 #include <set>
 #include <stdexcept>
 
 #include "camera/calibration/kitti_calibration.hpp"
-#include "camera/csv.hpp"
+#include "camera/kitti_oxts.hpp"
+#include "camera/kitti_times.hpp"
 
 namespace flogmap {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::int64_t kPeriodNs = 100'000'000;  // where no file says the times
 
 struct Layout {
   const char *left, *right;
@@ -35,19 +32,10 @@ std::set<std::string> picture_names(const fs::path& folder) {
   return names;
 }
 
-/// Seconds since the start, one a line; nothing if there is no such file.
-std::vector<double> read_times(const fs::path& file) {
-  std::vector<double> times;
-  if (!fs::exists(file)) return times;
-  for (const CsvRow& row : read_csv(file)) {
-    double seconds = 0;
-    if (!parse_number(row.fields[0], seconds) || std::abs(seconds) > 4e9) {
-      throw std::runtime_error(file.string() + ":" + std::to_string(row.line) + ": must be seconds, got '" +
-                               row.fields[0] + "'");
-    }
-    times.push_back(seconds);
-  }
-  return times;
+/// times.txt of an odometry sequence, timestamps.txt of a raw drive's camera.
+fs::path times_file(const fs::path& folder, const Layout& layout) {
+  const fs::path raw = (folder / layout.left).parent_path() / "timestamps.txt";
+  return fs::exists(raw) ? raw : folder / "times.txt";
 }
 
 fs::path calibration_file(const fs::path& folder) {
@@ -58,22 +46,24 @@ fs::path calibration_file(const fs::path& folder) {
   throw std::runtime_error(folder.string() + ": no calib.txt or calib_cam_to_cam.txt");
 }
 
-void list_pairs(const fs::path& folder, const Layout& layout, PicturePairList& list) {
+void list_pairs(const fs::path& folder, const Layout& layout, double rate_hz, PicturePairList& list) {
   const std::set<std::string> left = picture_names(folder / layout.left),
                               right = picture_names(folder / layout.right);
-  const std::vector<double> times = read_times(folder / "times.txt");
-  std::size_t index = 0;
+  const fs::path said = times_file(folder, layout);
+  const std::vector<std::int64_t> times = read_kitti_times(said);
+  if (times.empty()) list.assumed = said.string() + ": not there; " + assumed_rate(rate_hz);
+  const std::vector<std::size_t> lines = kitti_lines({left.begin(), left.end()}, times.size());
+  std::size_t place = 0;
   for (const std::string& name : left) {
-    const std::size_t i = index++;
+    const std::size_t line = lines[place++];
     const fs::path file = folder / layout.left / name;
-    if (!times.empty() && i >= times.size()) {
-      list.skip(file.string() + ": no time in times.txt");
+    if (!times.empty() && line >= times.size()) {
+      list.skip(file.string() + ": no time in " + said.filename().string());
       continue;
     }
-    const std::int64_t time_ns =
-        times.empty() ? static_cast<std::int64_t>(i) * kPeriodNs : std::llround(1e9 * times[i]);
+    const std::int64_t time_ns = times.empty() ? time_at(line, rate_hz) : times[line];
     if (!list.pairs.empty() && time_ns <= list.pairs.back().timestamp_ns) {
-      list.skip((folder / "times.txt").string() + ":" + std::to_string(i + 1) + ": time does not increase");
+      list.skip(said.string() + ":" + std::to_string(line + 1) + ": time does not increase");
     } else if (!right.contains(name)) {
       list.skip(file.string() + ": no right picture of that name");
     } else {
@@ -88,7 +78,7 @@ void list_pairs(const fs::path& folder, const Layout& layout, PicturePairList& l
 
 }  // namespace
 
-PicturePairList list_kitti(const fs::path& folder, bool needs_calibration) {
+PicturePairList list_kitti(const fs::path& folder, bool needs_calibration, double rate_hz) {
   if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": no such folder");
   const auto* layout = std::find_if(kLayouts.begin(), kLayouts.end(), [&](const Layout& candidate) {
     return fs::is_directory(folder / candidate.left) && fs::is_directory(folder / candidate.right);
@@ -96,13 +86,15 @@ PicturePairList list_kitti(const fs::path& folder, bool needs_calibration) {
   if (layout == kLayouts.end()) {
     throw std::runtime_error(folder.string() +
                              ": no folders image_0 and image_1 (or image_2 and image_3); the KITTI "
-                             "layout is expected");
+                             "layout is expected, or a raw drive with image_00/data and image_01/data");
   }
   PicturePairList list;
   if (needs_calibration) {
-    list.calibration = read_kitti_pair(calibration_file(folder), layout->left_number, layout->right_number);
+    const fs::path calibration = calibration_file(folder);
+    list.calibration = read_kitti_pair(calibration, layout->left_number, layout->right_number);
+    list.up_in_left_camera = kitti_up(folder / "oxts", calibration.parent_path());
   }
-  list_pairs(folder, *layout, list);
+  list_pairs(folder, *layout, rate_hz, list);
   return list;
 }
 

@@ -1,6 +1,8 @@
 #include "camera/picture_pair_source.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -15,6 +17,16 @@ std::string size_text(const Picture& picture) {
 }
 
 }  // namespace
+
+std::int64_t time_at(std::size_t picture, double rate_hz) {
+  return std::llround(1e9 * static_cast<double>(picture) / rate_hz);
+}
+
+std::string assumed_rate(double rate_hz) {
+  char text[80];
+  std::snprintf(text, sizeof text, "pictures are taken to come at %g Hz (--frame-rate)", rate_hz);
+  return text;
+}
 
 PicturePairSource::PicturePairSource(std::string spec, PicturePairList list, bool loop)
     : spec_(std::move(spec)), list_(std::move(list)), loop_(loop) {
@@ -84,7 +96,8 @@ SourceInfo PicturePairSource::info() const {
           .endless = false,
           .num_frames = static_cast<std::int64_t>(list_.pairs.size()),
           .first_timestamp_ns = list_.pairs.front().timestamp_ns,
-          .last_timestamp_ns = list_.pairs.back().timestamp_ns};
+          .last_timestamp_ns = list_.pairs.back().timestamp_ns,
+          .assumed = list_.assumed};
 }
 
 bool PicturePairSource::seek(std::int64_t timestamp_ns) {

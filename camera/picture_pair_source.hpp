@@ -17,6 +17,10 @@ struct PicturePair {
   std::filesystem::path left, right;
 };
 
+/// Times of pictures that came at this rate, and the words for it where nothing says the times.
+[[nodiscard]] std::int64_t time_at(std::size_t picture, double rate_hz);
+[[nodiscard]] std::string assumed_rate(double rate_hz);
+
 /// What a folder of pictures turned out to hold, whatever its layout.
 struct PicturePairList {
   std::vector<PicturePair> pairs;  // times increase strictly
@@ -24,6 +28,7 @@ struct PicturePairList {
   std::optional<StereoCalibration> calibration;
   std::optional<Eigen::Vector3d> up_in_left_camera;
   std::optional<PairSkew> skew;
+  std::string assumed;  // as SourceInfo::assumed
 
   void skip(std::string reason) { ++skipped.count, skipped.last_reason = std::move(reason); }
 };

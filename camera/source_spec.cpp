@@ -1,6 +1,7 @@
 #include "camera/source_spec.hpp"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -24,49 +25,57 @@ std::unique_ptr<StereoSource> open_pairs(const SourceOptions& options, PicturePa
   return std::make_unique<PicturePairSource>(options.spec, std::move(list), options.loop);
 }
 
-std::unique_ptr<StereoSource> open_euroc(const SourceOptions& options, const std::string& where) {
-  return open_pairs(options, list_euroc(where, options.calibration_file.empty()));
-}
-
-std::unique_ptr<StereoSource> open_kitti(const SourceOptions& options, const std::string& where) {
-  return open_pairs(options, list_kitti(where, options.calibration_file.empty()));
-}
-
-void require_calibration(const SourceOptions& options) {
-  if (!options.calibration_file.empty()) return;
+/// The calibration given; nothing if there is none and none is needed.
+std::optional<StereoCalibration> given_calibration(const SourceOptions& options) {
+  if (!options.calibration_file.empty()) return read_calibration(options.calibration_file);
+  if (!options.needs_calibration) return std::nullopt;
   throw std::runtime_error("source '" + options.spec +
                            "' carries no calibration: give one with --calibration FILE");
 }
 
+bool needs_folders_calibration(const SourceOptions& options) {
+  return options.calibration_file.empty() && options.needs_calibration;
+}
+
+std::unique_ptr<StereoSource> open_euroc(const SourceOptions& options, const std::string& where) {
+  return open_pairs(options, list_euroc(where, needs_folders_calibration(options)));
+}
+
+std::unique_ptr<StereoSource> open_kitti(const SourceOptions& options, const std::string& where) {
+  return open_pairs(options, list_kitti(where, needs_folders_calibration(options), options.frame_rate_hz));
+}
+
 std::unique_ptr<StereoSource> open_images(const SourceOptions& options, const std::string& where) {
-  require_calibration(options);
-  return open_pairs(options, list_images(where));
+  (void)given_calibration(options);  // before anything else is looked for
+  return open_pairs(options, list_images(where, options.frame_rate_hz));
 }
 
 std::unique_ptr<StereoSource> open_videos(const SourceOptions& options, const std::string& where) {
-  require_calibration(options);
+  std::optional<StereoCalibration> calibration = given_calibration(options);
   const std::size_t comma = where.find(',');
   if (comma == std::string::npos) throw std::runtime_error("video: must be LEFT,RIGHT, got '" + where + "'");
   return open_video({.spec = options.spec,
                      .left = where.substr(0, comma),
                      .right = where.substr(comma + 1),
                      .loop = options.loop,
-                     .calibration = read_calibration(options.calibration_file)});
+                     .calibration = std::move(calibration)});
 }
 
 std::unique_ptr<StereoSource> open_side_by_side(const SourceOptions& options, const std::string& where) {
-  require_calibration(options);
+  std::optional<StereoCalibration> calibration = given_calibration(options);
   return open_video({.spec = options.spec,
                      .left = where,
                      .right = "",
                      .loop = options.loop,
-                     .calibration = read_calibration(options.calibration_file)});
+                     .calibration = std::move(calibration)});
 }
 
 std::unique_ptr<StereoSource> open_cameras(const SourceOptions& options, const std::string& where) {
   LiveSpec live{.spec = options.spec, .where = where, .calibration = std::nullopt, .live = {}};
   if (!options.calibration_file.empty()) live.calibration = read_calibration(options.calibration_file);
   live.live = {.rate_hz = options.camera_rate_hz, .max_skew_ms = options.max_skew_ms};
+  live.width_px = options.camera_width_px;
+  live.height_px = options.camera_height_px;
   live.exposure_us = options.exposure_us;
   live.gain = options.gain;
   return open_live(std::move(live));

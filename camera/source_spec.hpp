@@ -12,9 +12,12 @@ namespace flogmap {
 struct SourceOptions {
   std::string spec{};
   std::string calibration_file{};  // overrides what the source carries; empty: the source's own
-  bool loop = false;       // a recording begins again at its end; the drop of its timestamp tells the wrap
-  std::uint64_t seed = 1;  // of everything random in a simulated source
+  bool needs_calibration = true;   // false: whoever opens it can do without, as one who calibrates
+  bool loop = false;          // a recording begins again at its end; the drop of its timestamp tells the wrap
+  std::uint64_t seed = 1;     // of everything random in a simulated source
+  double frame_rate_hz = 10;  // of picture files whose times nothing says
   // live cameras
+  int camera_width_px = 0, camera_height_px = 0;  // where no calibration says; 0: 640x480
   double camera_rate_hz = 20;
   double max_skew_ms = 5;  // pairs taken further apart are dropped
   double exposure_us = 0;  // 0: automatic; both cameras alike

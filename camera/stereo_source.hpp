@@ -2,10 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "camera/calibration/stereo_calibration.hpp"
+#include "camera/pair_skew.hpp"
 #include "camera/stereo_frame.hpp"
 
 namespace flogmap {
@@ -18,18 +20,14 @@ struct SourceInfo {
   std::optional<std::int64_t> num_frames;  // of a recording
   std::int64_t first_timestamp_ns = 0;     // of a recording
   std::int64_t last_timestamp_ns = 0;
+  std::string
+      assumed{};  // what the recording does not say and was taken for granted, in words; usually empty
 };
 
-/// Frames that could not be delivered, and why the newest of them could not.
+/// Frames that could not be delivered, and why the newest of them could not, or none can be at the moment.
 struct SkippedFrames {
   std::int64_t count = 0;
-  std::string last_reason;  // names the file, as "cam0/data/17.png: truncated PNG"
-};
-
-/// How far apart the two pictures of the pairs were taken.
-struct PairSkew {
-  double mean_ms = 0;     // of the absolute values
-  double largest_ms = 0;  // up to the bound above which pictures are no pair
+  std::string last_reason;  // names the file, as "cam0/data/17.png: truncated PNG"; without any: of an outage
 };
 
 /// Where stereo pairs come from. All calls but stop() are made by one thread.
@@ -51,6 +49,10 @@ class StereoSource {
   [[nodiscard]] virtual std::optional<StereoCalibration> calibration() const = 0;
 
   [[nodiscard]] virtual SkippedFrames skipped() const { return {}; }
+
+  /// While next() waits for something that may never come, a camera that was unplugged for instance, it calls
+  /// `tell` when that begins and when it ends, from its own thread; skipped() then says what it is.
+  virtual void on_trouble(std::function<void()> /*tell*/) {}
 
   /// Nothing where pairs have one time only.
   [[nodiscard]] virtual std::optional<PairSkew> skew() const { return std::nullopt; }

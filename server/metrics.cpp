@@ -54,6 +54,9 @@ struct Metrics::Families {
                                           .Register(registry);
   std::map<std::string, StageReport> seen_stages;  // what the histograms hold already
 
+  ps::Histogram* skew_s = nullptr;
+  SkewHistogram known_skew;  // what of it is in skew_s
+
   Families() {
     for (int hundreds = 1; hundreds < 6; ++hundreds) {
       by_class[hundreds] = &responses.Add({{"status", std::to_string(hundreds) + "xx"}});
@@ -107,6 +110,26 @@ void Metrics::set_stage(const StageReport& stage) {
   }
   histogram.ObserveMultiple(added, (stage.total_ms - seen.total_ms) / 1000);
   seen = stage;
+}
+
+void Metrics::set_skew(const SkewHistogram& skew) {
+  constexpr double kMsPerS = 1000;
+  if (families_->skew_s == nullptr) {  // only where cameras are timed one by one
+    ps::Histogram::BucketBoundaries bounds(SkewHistogram::kUpperMs.begin(), SkewHistogram::kUpperMs.end());
+    for (double& bound : bounds) bound /= kMsPerS;
+    families_->skew_s = &ps::BuildHistogram()
+                             .Name("flogmap_pair_skew_seconds")
+                             .Help("Time between the two pictures of a pair, dropped pairs included")
+                             .Register(families_->registry)
+                             .Add({}, bounds);
+  }
+  SkewHistogram& known = families_->known_skew;
+  if (skew.total() < known.total()) known = {};
+  std::vector<double> more(skew.counts.size());
+  for (std::size_t i = 0; i < more.size(); ++i)
+    more[i] = static_cast<double>(skew.counts[i] - known.counts[i]);
+  families_->skew_s->ObserveMultiple(more, (skew.sum_ms - known.sum_ms) / kMsPerS);
+  known = skew;
 }
 
 std::string Metrics::text() const { return ps::TextSerializer().Serialize(families_->registry.Collect()); }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "camera/pair_skew.hpp"
 #include "server/publication.hpp"
 
 namespace flogmap {
@@ -29,6 +30,9 @@ class Metrics {
   void set(const std::string& name, const std::string& help, const std::string& label,
            const std::string& label_value, double value);
   void set_stage(const StageReport& stage);
+
+  /// The histogram of a source's pairs, from its first one.
+  void set_skew(const SkewHistogram& skew);
 
   /// Prometheus text format 0.0.4.
   [[nodiscard]] std::string text() const;

@@ -1,5 +1,6 @@
 #include "server/options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -148,6 +149,17 @@ void add_start_options(OptionTable& table, Options& options) {
                           "how the world is levelled without --first-pose");
 }
 
+void parse_camera_size(const std::string& text, SourceOptions& source) {
+  const std::size_t x = text.find('x');
+  if (x == std::string::npos) throw UsageError("must be WIDTHxHEIGHT, for instance 1280x720");
+  const double width = parse_numbers(text.substr(0, x), 1)[0],
+               height = parse_numbers(text.substr(x + 1), 1)[0];
+  if (std::min(width, height) < 0 || std::max(width, height) > 16384)
+    throw UsageError("allowed: 0x0 (640x480) to 16384x16384");
+  source.camera_width_px = static_cast<int>(width);
+  source.camera_height_px = static_cast<int>(height);
+}
+
 }  // namespace
 
 void add_source_options(OptionTable& table, Options& options) {
@@ -166,7 +178,19 @@ void add_source_options(OptionTable& table, Options& options) {
                    options.source.seed = static_cast<std::uint64_t>(value);
                  },
              .show = [&options] { return std::to_string(options.source.seed); }});
+  table.number(
+      "frame-rate", "HZ", options.source.frame_rate_hz, 0.01, 1000,
+      "of pictures whose times nothing says: kitti: without times.txt, images: without times in names");
   table.number("camera-rate", "HZ", options.source.camera_rate_hz, 0.5, 240, "of live cameras");
+  table.add({.name = "camera-size",
+             .value_name = "WIDTHxHEIGHT",
+             .help = "of live cameras that no calibration is given for",
+             .parse = [&options](const std::string& text) { parse_camera_size(text, options.source); },
+             .show =
+                 [&options] {
+                   return std::to_string(options.source.camera_width_px) + "x" +
+                          std::to_string(options.source.camera_height_px);
+                 }});
   table.number("max-skew-ms", "MS", options.source.max_skew_ms, 0.01, 1000,
                "live: pairs taken further apart are dropped");
   table.number("exposure-us", "US", options.source.exposure_us, 0, 1e6,
@@ -202,7 +226,7 @@ void add_mapping_options(OptionTable& table, Options& options) {
                 "per stage; 0 = every core. Same map for any N");
 }
 
-void add_serve_options(OptionTable& table, Options& options) {
+void add_listen_options(OptionTable& table, Options& options) {
   ServeOptions& serve = options.serve;
   const auto show_listen = [&serve] {
     const bool v6 = serve.listen_address.find(':') != std::string::npos;
@@ -223,16 +247,21 @@ void add_serve_options(OptionTable& table, Options& options) {
              .help = "where to serve; port 0 takes a free one",
              .parse = parse_listen,
              .show = show_listen});
+  table.text("web-root", "DIR", serve.web_root, "folder of the built page");
+  add_access_options(table, options);
+}
+
+void add_serve_options(OptionTable& table, Options& options) {
+  ServeOptions& serve = options.serve;
+  add_listen_options(table, options);
   table.choice<bool>("pace", options.as_fast_as_possible, {{"realtime", false}, {"fast", true}},
                      "replay a recording as it was recorded, or as fast as possible");
   table.flag("loop", options.source.loop, "start a recording again at its end, with a new map");
   table.text("store", "FILE", options.store, "keep the map here; it goes on after a restart");
-  table.text("web-root", "DIR", serve.web_root, "folder of the built page");
   table.number("robot-radius", "METRES", serve.robot.radius_m, 0, 10, "of routes and the inflated maps");
   table.number("robot-height", "METRES", serve.robot.height_m, 0, 100,
                "layers above it do not matter; 0 = all do");
   table.text("maps", "DIR", options.maps_dir, "serve every *.flog in it beside the live map");
-  add_access_options(table, options);
   table.choice<LogFormat>("log-format", options.log.format,
                           {{"text", LogFormat::text}, {"json", LogFormat::json}},
                           "of the events on stderr: a line to read, or a JSON object a line");
@@ -252,7 +281,7 @@ std::vector<std::string> all_option_names() {
   add_serve_options(table, options);
   std::vector<std::string> names = table.names();
   names.insert(names.end(), {"out", "duration", "pictures", "left", "right", "pattern", "board", "square-mm",
-                             "marker-mm", "tag-gap", "dictionary", "model"});
+                             "marker-mm", "tag-gap", "dictionary", "model", "serve"});
   return names;
 }
 

@@ -37,6 +37,8 @@ struct Options {
 void add_source_options(OptionTable& table, Options& options);
 void add_stereo_options(OptionTable& table, StereoOptions& stereo);
 void add_mapping_options(OptionTable& table, Options& options);
+/// Of every command that serves; add_serve_options() takes them in.
+void add_listen_options(OptionTable& table, Options& options);
 void add_serve_options(OptionTable& table, Options& options);
 
 /// Names of every option of every command: a config file may serve several.

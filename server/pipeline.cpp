@@ -6,6 +6,7 @@
 
 #include "mapping/stereo/row_offset.hpp"
 #include "server/random_epoch.hpp"
+#include "server/source_warnings.hpp"
 
 namespace flogmap {
 namespace {
@@ -15,10 +16,6 @@ constexpr std::size_t kFrameQueue = 2;
 constexpr std::chrono::milliseconds kStatusEvery{500};
 constexpr const char* kPlaceUnknown =
     "not found again after a loss: show a mapped place (needs loop closure)";
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 std::string words_of_row_offset(double offset_px) {
   char px[16];
@@ -35,6 +32,7 @@ Pipeline::Pipeline(const PipelineOptions& options, std::unique_ptr<StereoSource>
       source_(std::move(source)),
       front_end_(std::move(front_end)),
       observer_(observer),
+      assumed_(source_->info().assumed),
       control_(source_->info(), options.rate, options.loop),
       statistics_(options.statistics_window),
       frames_(kFrameQueue, source_->info().live ? WhenFull::drop_oldest : WhenFull::wait),
@@ -44,8 +42,6 @@ Pipeline::Pipeline(const PipelineOptions& options, std::unique_ptr<StereoSource>
            [this] { return control_.state() == SessionState::draining; }) {
   if (options.loop_closure) loops_.emplace(*options.loop_closure, front_end_.camera(), source_->info().live);
 }
-
-Pipeline::~Pipeline() { stop(); }
 
 void Pipeline::start() {
   threads_.emplace_back([this] { run_stage([this] { capture(); }); });
@@ -84,6 +80,10 @@ void Pipeline::run_stage(Stage stage) {
 
 // ---- capture thread
 void Pipeline::capture() {
+  source_->on_trouble([this] {
+    note_losses();
+    frames_.push({.generation = generation_, .frame = {}, .trouble = true, .at = Clock::now()});
+  });
   const std::string epoch = options_.continued.epoch;
   generation_ = {1, epoch.empty() ? random_epoch() : epoch, epoch.empty() ? "started" : "continued"};
   frames_.push({.generation = generation_, .frame = {}, .at = Clock::now()});
@@ -115,11 +115,7 @@ bool Pipeline::read_frame() {
   if (options_.max_frames > 0 && frames_read_ >= options_.max_frames) return false;
   const auto start = Clock::now();
   std::optional<StereoFrame> frame = source_->next();
-  {
-    const std::scoped_lock lock(counters_mutex_);
-    skipped_ = source_->skipped();
-    if (const auto skew = source_->skew()) counters_.skew = {skew->mean_ms, skew->largest_ms};
-  }
+  note_losses();
   if (!frame) return false;
   ++frames_read_;
   statistics_.add(Stage::read, ms_since(start));
@@ -128,6 +124,14 @@ bool Pipeline::read_frame() {
   frames_.push({.generation = generation_, .frame = std::move(frame), .at = Clock::now()});
   control_.frame_delivered(timestamp_ns);
   return true;
+}
+
+void Pipeline::note_losses() {
+  const std::scoped_lock lock(counters_mutex_);
+  const SkippedFrames skipped = source_->skipped();
+  counters_.skipped_frames = static_cast<std::uint64_t>(skipped.count);
+  counters_.skew = source_->skew();
+  source_warnings_ = source_warnings(skipped, assumed_);
 }
 
 void Pipeline::at_end() {
@@ -171,6 +175,7 @@ void Pipeline::see() {
       wait_for_loops();
       report_status();  // nothing may follow, and the last counts must not stay behind
     }
+    if (captured->trouble) report_status();
     if (!captured->frame) continue;
     correct_path();
     FrontEndResult result = front_end_.process(*captured->frame);
@@ -289,19 +294,14 @@ void Pipeline::report_status() {
 StatusReport Pipeline::status() const {
   std::unique_lock lock(counters_mutex_);
   StatusReport report = counters_;
-  const SkippedFrames skipped = skipped_;
+  report.warnings.insert(report.warnings.end(), source_warnings_.begin(), source_warnings_.end());
   lock.unlock();
   const std::uint64_t unplaced = unplaced_frames_;
   report.tracked -= unplaced;
   report.lost += unplaced;
   report.waiting_views = map_.num_waiting();
   report.loops = loops_ ? loops_->num_loops() : 0;
-  report.skipped_frames = static_cast<std::uint64_t>(skipped.count);
   report.dropped_frames = frames_.dropped();
-  if (skipped.count > 0) {
-    report.warnings.push_back(std::to_string(skipped.count) +
-                              " frames skipped; last: " + skipped.last_reason);
-  }
   report.stages = statistics_.report();
   report.queues = {{"frames", frames_.size()}, {"views", map_.num_queued()}};
   report.queues.push_back({"loop", loops_ ? loops_->num_queued() : 0});

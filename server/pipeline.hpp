@@ -20,28 +20,10 @@
 #include "server/loop_stage.hpp"
 #include "server/map_stage.hpp"
 #include "server/pipeline_observer.hpp"
+#include "server/pipeline_options.hpp"
 #include "server/stage_statistics.hpp"
 
 namespace flogmap {
-
-/// The map that the first frames continue; empty for a fresh one.
-struct ContinuedMap {
-  std::string epoch;
-  std::vector<TileUpdate> tiles;
-  std::vector<TrajectoryEntry> trajectory;
-  std::vector<SharedView> views;
-};
-
-struct PipelineOptions {
-  double rate = 1;               // 1 as recorded, 0 as fast as possible
-  bool loop = false;             // a recording starts again at its end
-  bool end_with_source = false;  // batch: wait() returns when the recording has ended
-  std::int64_t max_frames = 0;   // the source counts as ended after so many; 0 = never
-  std::size_t statistics_window = 256;
-  std::optional<LoopOptions> loop_closure;               // nothing: loops stay open
-  std::size_t max_view_bytes = std::size_t{400} << 20U;  // of views kept to build the map anew
-  ContinuedMap continued;
-};
 
 /// source -> frames[2] -> front end -> views[4] -> map -> observer, and views[4] -> loops -> corrections back
 /// to where the path is kept. Four threads, each owning its part outright.
@@ -49,7 +31,7 @@ class Pipeline {
  public:
   Pipeline(const PipelineOptions& options, std::unique_ptr<StereoSource> source, FrontEnd front_end,
            MapIntegrator integrator, PipelineObserver& observer);
-  ~Pipeline();
+  ~Pipeline() { stop(); }
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
@@ -73,11 +55,13 @@ class Pipeline {
   struct Captured {
     Generation generation;
     std::optional<StereoFrame> frame;  // nothing: the generation is new, or ...
-    bool ended = false;                // ... the source has ended
+    bool ended = false;                // ... the source has ended, or ...
+    bool trouble = false;              // ... it waits for a camera, or does so no longer
     std::chrono::steady_clock::time_point at;
   };
   void capture();
   bool read_frame();
+  void note_losses();
   void restart(const std::string& reason, double position_s);
   void go_to(double position_s);
   void at_end();
@@ -96,6 +80,7 @@ class Pipeline {
   std::unique_ptr<StereoSource> source_;
   FrontEnd front_end_;
   PipelineObserver& observer_;
+  const std::string assumed_;  // as SourceInfo::assumed
   CaptureControl control_;
   StageStatistics statistics_;
   BoundedQueue<Captured> frames_;
@@ -112,7 +97,7 @@ class Pipeline {
   mutable std::mutex counters_mutex_;
   StatusReport counters_;
   std::atomic<std::uint64_t> unplaced_frames_ = 0;  // that wait for their place
-  SkippedFrames skipped_;
+  std::vector<std::string> source_warnings_;
   std::exception_ptr failure_;
   std::vector<std::jthread> threads_;
 };

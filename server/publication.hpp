@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/pair_skew.hpp"
 #include "camera/stereo_frame.hpp"
 #include "mapping/tile_update.hpp"
 #include "mapping/view.hpp"
@@ -50,12 +51,6 @@ struct QueueReport {
   std::uint64_t waiting = 0;
 };
 
-/// Between left and right picture, where the source knows it.
-struct SkewReport {
-  double mean_ms = 0;
-  double largest_ms = 0;
-};
-
 /// How the mapping does; published about twice a second.
 struct StatusReport {
   double frames_per_s = 0;
@@ -69,9 +64,9 @@ struct StatusReport {
   std::uint64_t skipped_frames = 0;  // could not be read
   std::vector<StageReport> stages;
   std::vector<QueueReport> queues;
-  SkewReport skew;
   std::vector<std::string> warnings;  // in words, with what to do
   std::string alignment;              // given, gravity, ground, none
+  std::optional<PairSkew> skew;       // of sources that time both pictures
 };
 
 /// A map begins: fresh, reset, or continued from a store.

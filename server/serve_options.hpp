@@ -9,6 +9,8 @@
 
 namespace flogmap {
 
+class CalibrationDesk;
+
 /// What a client may do. `view`: look at everything. `control`: also pause, reset and move the session.
 enum class Role : std::uint8_t { none, view, control };
 
@@ -48,6 +50,7 @@ struct HubInfo {
   std::string config_json = "{}";       // effective values and where each came from, secrets masked
   std::string calibration_json = "{}";  // of the rectified pair and the raw cameras
   std::string version = "unknown";
+  CalibrationDesk* desk = nullptr;  // of `flogmap calibrate`; outlives the server
 };
 
 /// Tokens of a file, one `view SECRET` or `control SECRET` a line, '#' starts a comment; an empty path gives

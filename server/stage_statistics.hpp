@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
@@ -12,6 +13,10 @@ namespace flogmap {
 
 enum class Stage : std::uint8_t { read, rectify, disparity, odometry, map };
 inline constexpr std::array<const char*, 5> kStageNames{"read", "rectify", "disparity", "odometry", "map"};
+
+inline double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// How long the stages take: median and 95th percentile of the last `window` values of each, and how many of
 /// all fall into which class. Written by the pipeline's threads, read by any.

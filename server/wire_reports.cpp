@@ -94,6 +94,13 @@ std::string encode_status(const StatusReport& report, const ServingStatus& servi
   for (const std::string& warning : report.warnings) status.add_warnings(warning);
   status.set_viewers(serving.viewers);
   status.set_alignment(report.alignment);
+  if (report.skew && report.skew->histogram.total() > 0) {
+    v1::PairSkew& skew = *status.mutable_pair_skew();
+    skew.set_mean_ms(report.skew->histogram.mean_ms());
+    skew.set_largest_ms(report.skew->histogram.largest_ms);
+    skew.set_allowed_ms(report.skew->allowed_ms);
+    skew.set_dropped_pairs(static_cast<std::uint64_t>(report.skew->num_dropped));
+  }
   return message.SerializeAsString();
 }
 

@@ -9,6 +9,7 @@ export default defineConfig({
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 900,
     modulePreload: { polyfill: false },
+    rollupOptions: { input: ['index.html', 'calibrate.html'] },
   },
   worker: { format: 'es' },
   server: {

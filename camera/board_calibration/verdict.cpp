@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "camera/board_calibration/picture_areas.hpp"
 #include "camera/calibration/distortion.hpp"
 #include "camera/rectifier.hpp"
 #include "camera/rectifying_rotations.hpp"
@@ -32,31 +33,17 @@ std::string text(const char* format, double value) {
   return buffer.data();
 }
 
-/// "upper left", ... of a picture cut into three by three.
-std::string area_name(int column, int row) {
-  static constexpr std::array kRows{"upper ", "", "lower "};
-  static constexpr std::array kColumns{"left", "middle", "right"};
-  const std::string row_name = kRows[static_cast<std::size_t>(row)];
-  return row_name.empty() && column == 1 ? "centre" : row_name + kColumns[static_cast<std::size_t>(column)];
-}
-
 /// Areas of a camera's picture where the board was never seen.
 void advise_on_coverage(const CalibrationResult& result, bool right, std::vector<std::string>& advice) {
   const CameraIntrinsics& camera = right ? result.calibration.right : result.calibration.left;
-  std::array<std::array<int, 3>, 3> count{};
+  AreaCounts counts{};
   for (const CornerError& corner : result.corners) {
-    if (corner.right != right || !corner.used) continue;
-    const auto third = [](double at, int size) {
-      return static_cast<std::size_t>(std::clamp(static_cast<int>(3 * at / size), 0, 2));
-    };
-    ++count[third(corner.pixel.y(), camera.height_px)][third(corner.pixel.x(), camera.width_px)];
+    if (corner.right == right && corner.used)
+      ++counts[area_of(corner.pixel, camera.width_px, camera.height_px)];
   }
   std::string empty;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      if (count[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] == 0)
-        empty += (empty.empty() ? "" : ", ") + area_name(column, row);
-    }
+  for (std::size_t area = 0; area < counts.size(); ++area) {
+    if (counts[area] == 0) empty += (empty.empty() ? "" : ", ") + area_name(area);
   }
   if (empty.empty()) return;
   advice.push_back(std::string("the ") + (right ? "right" : "left") +

@@ -72,6 +72,16 @@ StereoCalibration read_kitti_pair(const std::filesystem::path& file, int left, i
   return calibration;
 }
 
+Eigen::Matrix3d read_kitti_rotation(const std::filesystem::path& file, const std::string& name) {
+  const std::vector<double> values = numbers(read_fields(file), name, 9, file.string());
+  const Eigen::Matrix3d rotation =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
+  constexpr double kRounding = 1e-3;
+  if ((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() > kRounding)
+    throw std::runtime_error(file.string() + ": " + name + " is no rotation");
+  return rotation;
+}
+
 bool is_kitti_calibration(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {

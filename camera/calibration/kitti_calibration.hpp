@@ -15,4 +15,7 @@ namespace flogmap {
 /// Does this text look like such a file?
 [[nodiscard]] bool is_kitti_calibration(const std::string& text);
 
+/// A rotation by its name, of any of KITTI's calib_*.txt: nine numbers, row by row.
+[[nodiscard]] Eigen::Matrix3d read_kitti_rotation(const std::filesystem::path& file, const std::string& name);
+
 }  // namespace flogmap

@@ -50,11 +50,8 @@ std::optional<StereoFrame> LiveSource::next() {
 /// Frame durations by the skew of each new pair, delivered or not; exposure by the left camera's.
 void LiveSource::keep_in_step(const RigPicture& taken, std::int64_t skews_before) {
   const PairingCounts& counts = pairing_.counts();
-  if (counts.skew.total() > skews_before) {
-    largest_skew_ms_ =
-        std::max(largest_skew_ms_, std::abs(static_cast<double>(counts.last_skew_ns)) / kNsPerMs);
-    if (!rig_->keeps_step()) rig_->set_right_duration(servo_.duration_for(counts.last_skew_ns));
-  }
+  if (counts.skew.total() > skews_before && !rig_->keeps_step())
+    rig_->set_right_duration(servo_.duration_for(counts.last_skew_ns));
   const bool known = taken.side == Side::left && taken.exposure_us > 0 && taken.gain > 0;
   if (!known || (taken.exposure_us == exposure_us_ && taken.gain == gain_)) return;
   exposure_us_ = taken.exposure_us;
@@ -65,7 +62,11 @@ void LiveSource::keep_in_step(const RigPicture& taken, std::int64_t skews_before
 void LiveSource::wait_for_cameras() {
   outage_ = rig_->lost();
   ++outages_;
+  waiting_ = true;
+  if (tell_) tell_();
   while (!stopped_ && !rig_->reopen()) (void)rig_->wait(kLookAgain);
+  waiting_ = false;
+  if (tell_) tell_();
   exposure_us_ = gain_ = 0;  // a camera that comes back has forgotten
 }
 
@@ -97,14 +98,16 @@ SkippedFrames LiveSource::skipped() const {
                   static_cast<long long>(counts.alone_left), static_cast<long long>(counts.alone_right));
   }
   skipped.last_reason = text;
-  if (outages_ > 0) skipped.last_reason += (skipped.last_reason.empty() ? "" : "; ") + outage_;
+  if (outages_ > 0) {
+    skipped.last_reason += (skipped.last_reason.empty() ? "" : "; ") + outage_ +
+                           (waiting_ ? "; waiting until it is back" : "; it came back");
+  }
   return skipped;
 }
 
 std::optional<PairSkew> LiveSource::skew() const {
-  const SkewHistogram& skew = pairing_.counts().skew;
-  if (skew.total() == 0) return std::nullopt;
-  return PairSkew{skew.sum_ms / static_cast<double>(skew.total()), largest_skew_ms_};
+  const PairingCounts& counts = pairing_.counts();
+  return PairSkew{counts.skew, options_.max_skew_ms, counts.too_skewed};
 }
 
 std::unique_ptr<StereoSource> open_live(LiveSpec live) {
@@ -116,6 +119,10 @@ std::unique_ptr<StereoSource> open_live(LiveSpec live) {
   if (rig.left_id == rig.right_id)
     throw std::runtime_error("libcamera: left and right must be two cameras, got '" + rig.left_id +
                              "' twice");
+  if (!live.calibration && live.width_px > 0) {
+    rig.width_px = live.width_px;
+    rig.height_px = live.height_px;
+  }
   if (live.calibration) {
     rig.width_px = live.calibration->left.width_px;
     rig.height_px = live.calibration->left.height_px;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "camera/live/camera_rig.hpp"
 #include "camera/stereo_source.hpp"
@@ -29,6 +31,7 @@ class LiveSource final : public StereoSource {
   [[nodiscard]] std::optional<StereoCalibration> calibration() const override { return calibration_; }
   [[nodiscard]] SkippedFrames skipped() const override;
   [[nodiscard]] std::optional<PairSkew> skew() const override;
+  void on_trouble(std::function<void()> tell) override { tell_ = std::move(tell); }
 
   /// What became of the pictures so far.
   [[nodiscard]] const PairingCounts& counts() const { return pairing_.counts(); }
@@ -46,7 +49,8 @@ class LiveSource final : public StereoSource {
   double exposure_us_ = 0, gain_ = 0;  // what the right camera was last told
   std::int64_t outages_ = 0;
   std::string outage_;  // of the last one
-  double largest_skew_ms_ = 0;
+  bool waiting_ = false;
+  std::function<void()> tell_;
   std::atomic<bool> stopped_ = false;
 };
 
@@ -55,6 +59,7 @@ struct LiveSpec {
   std::string spec, where;
   std::optional<StereoCalibration> calibration;
   LiveOptions live;
+  int width_px = 0, height_px = 0;  // where no calibration says; 0: the rig's own default
   double exposure_us = 0, gain = 0;
 };
 [[nodiscard]] std::unique_ptr<StereoSource> open_live(LiveSpec spec);

@@ -60,9 +60,11 @@ void collect(ServerState& state) {
   metrics.set("flogmap_views_waiting", "Views whose place in the map is not known yet",
               static_cast<double>(report.waiting_views));
   metrics.set("flogmap_loops", "Loops closed", static_cast<double>(report.loops));
-  metrics.set("flogmap_skew_mean_seconds", "Between left and right picture, where it is known",
-              report.skew.mean_ms / 1000);
-  metrics.set("flogmap_skew_largest_seconds", "Likewise, the largest", report.skew.largest_ms / 1000);
+  if (report.skew) {
+    metrics.set_skew(report.skew->histogram);
+    metrics.set("flogmap_pairs_dropped", "Pairs taken further apart than allowed",
+                static_cast<double>(report.skew->num_dropped));
+  }
   for (const StageReport& stage : report.stages) metrics.set_stage(stage);
   collect_queues(state);
 }

@@ -22,6 +22,7 @@ std::vector<Route> image_routes();       // /maps/{id}/image.png
 std::vector<Route> export_routes();      // /maps/{id}/export
 std::vector<Route> route_routes();       // /maps/{id}/route
 std::vector<Route> view_routes();        // /maps/{id}/views
+std::vector<Route> calibrate_routes();   // /calibrate
 std::vector<Route> docs_routes();        // /openapi.yaml, /docs
 
 /// All of them.

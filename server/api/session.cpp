@@ -8,6 +8,23 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Nothing where pairs have one time only; else how many pairs were taken up to so far apart.
+Json skew_json(const std::optional<PairSkew>& skew) {
+  if (!skew) return nullptr;
+  const SkewHistogram& histogram = skew->histogram;
+  Json bins = Json::array();
+  for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+    const bool bounded = i < SkewHistogram::kUpperMs.size();
+    bins.push_back({{"up_to_ms", bounded ? Json(SkewHistogram::kUpperMs[i]) : Json(nullptr)},
+                    {"pairs", histogram.counts[i]}});
+  }
+  return {{"mean_ms", histogram.mean_ms()},
+          {"largest_ms", histogram.largest_ms},
+          {"allowed_ms", skew->allowed_ms},
+          {"dropped_pairs", skew->num_dropped},
+          {"histogram", bins}};
+}
+
 ApiResponse session_response(ServerState& state) {
   const StatusReport& report = state.status;
   Json json = {{"state", name_of(state.session_state())},
@@ -25,6 +42,7 @@ ApiResponse session_response(ServerState& state) {
                {"loops", report.loops},
                {"dropped_frames", report.dropped_frames},
                {"skipped_frames", report.skipped_frames},
+               {"pair_skew", skew_json(report.skew)},
                {"alignment", report.alignment},
                {"viewers", state.num_viewers},
                {"warnings", report.warnings}};

@@ -50,8 +50,9 @@ void print(const StereoCalibration& calibration, const CalibrationReview& review
   std::printf("rows differ by   %.2f px (median), %.2f px (p95), right %+.2f px lower\n",
               review.vertical_p50_px, review.vertical_p95_px, review.vertical_bias_px);
   const std::optional<PairSkew> skew = source.skew();
-  if (skew) {
-    std::printf("time skew        %.3f ms (mean), %.3f ms (largest)\n", skew->mean_ms, skew->largest_ms);
+  if (skew && skew->histogram.total() > 0) {
+    std::printf("time skew        %.3f ms (mean), %.3f ms (largest)\n", skew->histogram.mean_ms(),
+                skew->histogram.largest_ms);
   } else {
     std::printf("time skew        not known: the source has one time per pair\n");
   }

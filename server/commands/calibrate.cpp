@@ -1,10 +1,12 @@
-// flogmap calibrate: pictures of a board in, a stereo calibration and a verdict out.
+// flogmap calibrate: pictures of a board in, from files or from any source, a stereo calibration and a
+// verdict out.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <memory>
 #include <numbers>
 #include <string>
+#include <thread>
 
 #include "camera/board_calibration/board_detector.hpp"
 #include "camera/board_calibration/verdict.hpp"
@@ -13,7 +15,13 @@
 #include "camera/images_source.hpp"
 #include "camera/picture_files.hpp"
 #include "server/commands/commands.hpp"
+#include "server/commands/interrupt_watcher.hpp"
+#include "server/commands/live_desk.hpp"
 #include "server/commands/progress_bar.hpp"
+#include "server/commands/serving.hpp"
+#include "server/commands/stored_control.hpp"
+#include "server/hub.hpp"
+#include "server/log.hpp"
 #include "server/options.hpp"
 
 namespace flogmap {
@@ -27,6 +35,8 @@ struct CalibrateArguments {
   double square_mm = 25;
   double marker_mm = 0;  // 0: the usual share of the square
   Distortion model = Distortion::radtan;
+  Options options;  // of a source, and of a page that shows it
+  bool serve = false;
 };
 
 void parse_board(const std::string& text, BoardSpec& board) {
@@ -38,6 +48,10 @@ void parse_board(const std::string& text, BoardSpec& board) {
 
 void add_options(OptionTable& table, CalibrateArguments& arguments) {
   BoardSpec& board = arguments.board;
+  add_source_options(table, arguments.options);
+  table.flag("serve", arguments.serve,
+             "with --source: a page that shows the pictures and where to hold the board");
+  add_listen_options(table, arguments.options);
   table.text("left", "GLOB", arguments.left, "pictures of the left camera, quoted: 'left*.png'");
   table.text("right", "GLOB", arguments.right, "pictures of the right camera, numbered alike");
   table.choice<BoardPattern>("pattern", board.pattern,
@@ -115,9 +129,8 @@ Sightings look_at_all(const CalibrateArguments& arguments) {
   return sightings;
 }
 
-void print_verdict(const CalibrationVerdict& verdict, const Sightings& sightings, const std::string& out) {
+void print_verdict(const CalibrationVerdict& verdict, const std::string& out) {
   constexpr double kDegreesPerRad = 180 / std::numbers::pi;
-  for (const std::string& problem : sightings.problems) std::printf("not used: %s\n", problem.c_str());
   std::printf("pairs            %zu with %zu corners (%zu left out as too far off)\n", verdict.num_pairs,
               verdict.num_corners + verdict.num_left_out, verdict.num_left_out);
   std::printf("rms              %.3f px\n", verdict.rms_px);
@@ -144,14 +157,67 @@ CalibrationResult solve_with_bar(const CalibrateArguments& arguments, const Sigh
   return result;
 }
 
-int calibrate(CalibrateArguments arguments) {
-  for (const auto& [name, value] :
-       {std::pair("--left", &arguments.left), std::pair("--right", &arguments.right),
-        std::pair("--out", &arguments.out)}) {
-    if (value->empty()) throw UsageError(std::string(name) + " is missing; see flogmap calibrate --help");
+/// Serves the page until Ctrl-C, while the desk looks at the source.
+void serve_desk(CalibrateArguments& arguments, LiveDesk& desk, StereoSource& source) {
+  const LogScope log(arguments.options.log);
+  const std::string& spec = arguments.options.source.spec;
+  StoredControl control(spec, "nothing is mapped while cameras are calibrated");
+  HubInfo info;
+  info.version = FLOGMAP_VERSION;
+  info.desk = &desk;
+  Hub hub(arguments.options.serve, control, info);
+  hub.drain_on_signals();
+  std::exception_ptr failure;
+  std::jthread looker([&] {
+    try {
+      desk.run(source, true);
+    } catch (...) {
+      failure = std::current_exception();
+      hub.drain("the source failed");
+    }
+  });
+  announce(arguments.options, hub.port(), "Calibrating " + spec, "/calibrate.html");
+  hub.run();
+  source.stop();
+  desk.stop();
+  looker.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+int calibrate_source(CalibrateArguments& arguments) {
+  if (arguments.serve) settle_serving(arguments.options);
+  arguments.options.source.needs_calibration = false;
+  std::unique_ptr<StereoSource> source;
+  std::unique_ptr<LiveDesk> desk;
+  try {
+    source = open_source(arguments.options.source);
+    const bool photos = arguments.options.source.spec.starts_with("images:");
+    desk = std::make_unique<LiveDesk>(DeskOptions{arguments.board, arguments.model, photos, arguments.out});
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
   }
+  if (arguments.serve) {
+    serve_desk(arguments, *desk, *source);
+  } else {
+    const InterruptWatcher ctrl_c([&] { source->stop(); });
+    desk->run(*source, false);
+  }
+  if (!desk->problem().empty()) throw std::runtime_error(desk->problem());
+  if (const auto verdict = desk->verdict()) print_verdict(*verdict, arguments.out);
+  return 0;
+}
+
+void require(const std::string& name, const std::string& value) {
+  if (value.empty()) throw UsageError(name + " is missing; see flogmap calibrate --help");
+}
+
+int calibrate(CalibrateArguments& arguments) {
+  require("--out", arguments.out);
   arguments.board.square_m = arguments.square_mm / kMmPerM;
   if (arguments.marker_mm > 0) arguments.board.marker_share = arguments.marker_mm / arguments.square_mm;
+  if (!arguments.options.source.spec.empty()) return calibrate_source(arguments);
+  require("--left (or --source)", arguments.left);
+  require("--right", arguments.right);
   Sightings sightings;
   try {
     sightings = look_at_all(arguments);
@@ -165,7 +231,8 @@ int calibrate(CalibrateArguments arguments) {
   std::ofstream out(arguments.out, std::ios::binary | std::ios::trunc);
   out << format_opencv(result.calibration) << std::flush;
   if (!out) throw UsageError(arguments.out + ": cannot be written");
-  print_verdict(verdict, sightings, arguments.out);
+  for (const std::string& problem : sightings.problems) std::printf("not used: %s\n", problem.c_str());
+  print_verdict(verdict, arguments.out);
   return 0;
 }
 
@@ -180,8 +247,10 @@ RunCommand add_calibrate(CLI::App& app) {
   add_options(state->table, state->arguments);
   state->table.attach(app);
   app.footer(
-      "Example: flogmap calibrate --left 'left*.png' --right 'right*.png' --board 9x6 --square-mm 25 "
-      "--out calib.yaml");
+      "Examples: flogmap calibrate --left 'left*.png' --right 'right*.png' --board 9x6 --square-mm 25 --out "
+      "calib.yaml\n"
+      "          flogmap calibrate --source libcamera:LEFT,RIGHT --serve --board 9x6 --square-mm 25 --out "
+      "calib.yaml");
   return [state] {
     state->table.apply(all_option_names());
     return calibrate(state->arguments);

@@ -92,6 +92,7 @@ int record(const RecordArguments& arguments) {
   std::printf("%lld pairs written to %s; %lld skipped\n", static_cast<long long>(writer.num_written()),
               arguments.options.out_dir.c_str(), static_cast<long long>(skipped.count));
   if (skipped.count > 0) std::printf("warning: last skipped: %s\n", skipped.last_reason.c_str());
+  if (!info.assumed.empty()) std::printf("warning: %s\n", info.assumed.c_str());
   if (!broken_off.empty()) throw std::runtime_error(broken_off);
   return 0;
 }

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "server/access.hpp"
 #include "server/commands/commands.hpp"
 #include "server/commands/mapping_session.hpp"
+#include "server/commands/serving.hpp"
 #include "server/commands/stored_control.hpp"
 #include "server/hub.hpp"
 #include "server/log.hpp"
@@ -81,42 +81,6 @@ class ServeObserver final : public PipelineObserver {
   std::int64_t tracked_ns_ = -1;  // newest frame whose pose the hub has
 };
 
-/// The built page: beside the program in a checkout, or where `cmake --install` puts it.
-std::string find_web_root() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  const auto folder = program.parent_path();
-  for (const auto& candidate : {folder / "../../web/dist", folder / "../share/flogmap/web"}) {
-    if (std::filesystem::exists(candidate / "index.html", error)) {
-      return std::filesystem::weakly_canonical(candidate, error).string();
-    }
-  }
-  return {};
-}
-
-void announce(const Options& options, const Hub& hub, const std::string& what) {
-  const std::string& address = options.serve.listen_address;
-  const bool any = address == "0.0.0.0" || address == "::";
-  const std::string host = any                                      ? "127.0.0.1"
-                           : address.find(':') != std::string::npos ? "[" + address + "]"
-                                                                    : address;
-  const std::string scheme = options.serve.tls_cert.empty() ? "http" : "https";
-  const std::string url = scheme + "://" + host + ":" + std::to_string(hub.port());
-  if (options.log.format == LogFormat::text) {
-    std::printf("%s: open %s in a browser (Ctrl-C ends)\n", what.c_str(), url.c_str());
-    std::fflush(stdout);
-  }
-  log_event(LogLevel::info, "serving", {{"what", what}, {"url", url}, {"version", FLOGMAP_VERSION}});
-  if (options.serve.insecure_no_auth && !is_loopback(address)) {
-    log_event(LogLevel::warning,
-              "everybody who can reach this address may look and control (--insecure-no-auth)");
-  }
-  if (options.serve.web_root.empty()) {
-    log_event(LogLevel::warning, "the page is not built; run scripts/build");
-  }
-}
-
 MapBegin begin_of(const StoredMap& map, const std::string& reason) {
   return {.epoch = map.epoch,
           .info = map.info,
@@ -148,7 +112,7 @@ int serve_stored(const Options& options, const HubInfo& info) {
   add_stored_maps(hub, options.maps_dir);
   hub.begin(begin_of(map, "stored"));
   hub.drain_on_signals();
-  announce(options, hub, "Serving the stored map " + options.store);
+  announce(options, hub.port(), "Serving the stored map " + options.store);
   hub.run();
   return 0;
 }
@@ -161,16 +125,6 @@ void outrank_what_viewers_know(StoredMap& map) {
   for (TileUpdate& update : map.tiles) {
     update.tile = std::make_shared<const Tile>(Tile{update.tile->cells, map.revision});
     update.revision = map.revision;
-  }
-}
-
-/// Tokens, addresses and limits, or why they cannot be.
-void settle_access(Options& options) {
-  try {
-    options.serve.tokens = read_tokens(options.tokens_file);
-    check(options.serve);
-  } catch (const std::exception& error) {
-    throw UsageError(error.what());
   }
 }
 
@@ -247,8 +201,8 @@ int serve_source(const Options& options, HubInfo info) {
   add_stored_maps(hub, options.maps_dir);
   observer.connect(&hub, store.get());
   hub.drain_on_signals();
-  const std::exception_ptr failure =
-      serve_until_end(pipeline, hub, [&] { announce(options, hub, "Mapping " + options.source.spec); });
+  const std::exception_ptr failure = serve_until_end(
+      pipeline, hub, [&] { announce(options, hub.port(), "Mapping " + options.source.spec); });
   if (store) {
     const StoreState saved = store->flush();
     log_event(saved.ok ? LogLevel::info : LogLevel::error, "store",
@@ -283,8 +237,7 @@ RunCommand add_serve(CLI::App& app) {
     if (options.source.spec.empty() && options.store.empty()) {
       throw UsageError("say what to serve: --source SPEC to map, --store FILE for a stored map, or both");
     }
-    settle_access(options);
-    if (options.serve.web_root.empty()) options.serve.web_root = find_web_root();
+    settle_serving(options);
     HubInfo info;
     info.config_json = state->table.effective().dump();
     info.version = FLOGMAP_VERSION;

@@ -7,10 +7,12 @@
 
 namespace flogmap {
 
-/// Stands in for a session where only a stored map is served: there is nothing to steer.
+/// Stands in for a session where nothing is mapped, as where only a stored map is served: there is nothing to
+/// steer.
 class StoredControl final : public SessionControl {
  public:
-  explicit StoredControl(std::string file) : file_(std::move(file)) {}
+  explicit StoredControl(std::string file, std::string why = "a stored map is served; nothing runs")
+      : file_(std::move(file)), why_(std::move(why)) {}
   [[nodiscard]] SessionState state() const override { return SessionState::stored; }
   [[nodiscard]] std::string reason() const override { return {}; }
   [[nodiscard]] bool live() const override { return false; }
@@ -23,8 +25,8 @@ class StoredControl final : public SessionControl {
   ControlResult step() override { return refuse(); }
 
  private:
-  static ControlResult refuse() { return {ControlOutcome::illegal, "a stored map is served; nothing runs"}; }
-  const std::string file_;
+  [[nodiscard]] ControlResult refuse() const { return {ControlOutcome::illegal, why_}; }
+  const std::string file_, why_;
 };
 
 }  // namespace flogmap

@@ -5,6 +5,7 @@
 #include <deque>
 #include <random>
 #include <thread>
+#include <vector>
 
 #include "camera/live/live_source.hpp"
 #include "camera/live/luma.hpp"
@@ -13,6 +14,7 @@
 namespace flogmap {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -91,7 +93,9 @@ TEST(LiveSource, CamerasOutOfStepAreBroughtTogetherAndPairsMeanwhileAreDroppedAn
   EXPECT_LT(std::abs(source.counts().last_skew_ns), 100'000);
   EXPECT_THAT(source.skipped().last_reason, HasSubstr("--max-skew-ms"));
   ASSERT_TRUE(source.skew());
-  EXPECT_NEAR(source.skew()->largest_ms, 20, 0.5);
+  EXPECT_NEAR(source.skew()->histogram.largest_ms, 20, 0.5);
+  EXPECT_EQ(source.skew()->num_dropped, source.counts().too_skewed);
+  EXPECT_EQ(source.skew()->histogram.total(), source.counts().pairs + source.counts().too_skewed);
 }
 
 TEST(LiveSource, TheRightCameraIsExposedLikeTheLeftOne) {
@@ -106,6 +110,8 @@ TEST(LiveSource, TheRightCameraIsExposedLikeTheLeftOne) {
 TEST(LiveSource, ACameraThatIsUnpluggedIsWaitedForAndSaid) {
   RigLog log;
   LiveSource source = live(log, 0, 30);
+  std::vector<std::string> told;
+  source.on_trouble([&] { told.push_back(source.skipped().last_reason); });
   std::int64_t last_ns = -1;
   for (int i = 0; i < 100; ++i) {
     const auto frame = source.next();
@@ -114,7 +120,9 @@ TEST(LiveSource, ACameraThatIsUnpluggedIsWaitedForAndSaid) {
     last_ns = frame->timestamp_ns;
   }
   EXPECT_EQ(log.reopened, 1);
-  EXPECT_THAT(source.skipped().last_reason, HasSubstr("camera B was unplugged"));
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_THAT(told[0], AllOf(HasSubstr("camera B was unplugged"), HasSubstr("waiting")));
+  EXPECT_THAT(told[1], AllOf(HasSubstr("camera B was unplugged"), HasSubstr("came back")));
 }
 
 TEST(LiveSource, StopEndsItEvenWhileACameraIsGone) {

@@ -11,8 +11,13 @@ export class Program {
 
   /** `flogmap serve` of a source; port 0 takes any free one. Throws what the program said if it does not come up. */
   static start(source = 'sim:room', port = 0, more: readonly string[] = []): Promise<Program> {
+    return Program.launch(['serve', '--source', source, ...more], port);
+  }
+
+  /** Any command that serves. */
+  static launch(command: readonly string[], port = 0): Promise<Program> {
     if (!existsSync(PROGRAM)) throw new Error(`${PROGRAM} is missing: build it, or name another in FLOGMAP_BIN`);
-    const args = ['serve', '--source', source, '--listen', `127.0.0.1:${port}`, '--web-root', path.join(ROOT, 'web/dist'), ...more];
+    const args = [...command, '--listen', `127.0.0.1:${port}`, '--web-root', path.join(ROOT, 'web/dist')];
     const child = spawn(PROGRAM, args, { stdio: ['ignore', 'pipe', 'pipe'] });
     return new Promise((resolve, reject) => {
       let said = '';

@@ -7,3 +7,5 @@ flogmap_test(composition_tests
 flogmap_bench(chain_bench
   SOURCES ${PROJECT_SOURCE_DIR}/tests/bench/chain_bench.cpp
   LINK pipeline nlohmann_json::nlohmann_json)
+
+flogmap_test(live_desk_tests SOURCES live_desk_test.cpp LINK live_desk nlohmann_json::nlohmann_json)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -44,7 +45,11 @@ class Witness final : public PipelineObserver {
     changed.notify_all();
   }
   void pictures_taken(const PictureReport& /*report*/) override {}
-  void status_changed(const StatusReport& /*report*/) override {}
+  void status_changed(const StatusReport& report) override {
+    const std::scoped_lock lock(mutex);
+    status = report;
+    changed.notify_all();
+  }
 
   template <typename Condition>
   void wait_until(Condition condition) {
@@ -59,6 +64,39 @@ class Witness final : public PipelineObserver {
   std::size_t tiles_since_begin = 0;
   std::size_t poses_since_begin = 0;
   int frames = 0;
+  StatusReport status;
+};
+
+/// A camera pair of which one is unplugged before the first frame; stop() ends the waiting.
+class UnpluggedSource final : public StereoSource {
+ public:
+  explicit UnpluggedSource(std::unique_ptr<StereoSource> recording) : recording_(std::move(recording)) {}
+  std::optional<StereoFrame> next() override {
+    tell_();
+    std::unique_lock lock(mutex_);
+    ended_.wait(lock, [this] { return stopped_; });
+    return std::nullopt;
+  }
+  void stop() override {
+    const std::scoped_lock lock(mutex_);
+    stopped_ = true;
+    ended_.notify_all();
+  }
+  void on_trouble(std::function<void()> tell) override { tell_ = std::move(tell); }
+  [[nodiscard]] SourceInfo info() const override {
+    return {.spec = "cameras", .live = true, .endless = true, .num_frames = std::nullopt};
+  }
+  [[nodiscard]] std::optional<StereoCalibration> calibration() const override {
+    return recording_->calibration();
+  }
+  [[nodiscard]] SkippedFrames skipped() const override { return {0, "camera B was unplugged"}; }
+
+ private:
+  std::unique_ptr<StereoSource> recording_;
+  std::function<void()> tell_;
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool stopped_ = false;
 };
 
 std::unique_ptr<Pipeline> make_pipeline(PipelineObserver& observer, bool end_with_source, int fail_at = -1) {
@@ -130,6 +168,22 @@ TEST(Pipeline, WhatAStageThrowsComesOutOfWait) {
   EXPECT_THROW(pipeline->wait(), std::runtime_error);
   EXPECT_EQ(pipeline->control().state(), SessionState::failed);
   EXPECT_EQ(pipeline->control().reason(), "the cable is out");
+}
+
+TEST(Pipeline, ACameraThatIsGoneIsSaidWhileItIsWaitedFor) {
+  Witness witness;
+  auto source = std::make_unique<UnpluggedSource>(open_source({.spec = "sim:room"}));
+  FrontEnd front_end(FrontEndOptions{}, Rectifier(*source->calibration()), std::nullopt, std::nullopt);
+  MapIntegrator integrator(FlogOptions{}, front_end.camera(), front_end.max_disparity_px());
+  Pipeline pipeline({}, std::move(source), std::move(front_end), std::move(integrator), witness);
+  pipeline.start();
+  witness.wait_until([&] { return !witness.status.warnings.empty(); });
+  {
+    const std::scoped_lock lock(witness.mutex);
+    EXPECT_EQ(witness.status.warnings.front(), "camera B was unplugged");
+  }
+  pipeline.stop();
+  pipeline.wait();
 }
 
 TEST(Pipeline, StoppingEndsAPausedSession) {

@@ -1,7 +1,7 @@
 // How the session is doing: state, rates, sizes, stage times, and warnings in words.
 
 import { TrackingState } from '../gen/flogmap/v1/map_pb';
-import { ImageStream, type Status } from '../gen/flogmap/v1/stream_pb';
+import { ImageStream, type PairSkew, type Status } from '../gen/flogmap/v1/stream_pb';
 import { lengthOf } from '../geometry';
 import type { Page } from '../page';
 import { h, setText } from '../ui/dom';
@@ -69,9 +69,17 @@ function factsOf(page: Page, bytesPerSecond: number): readonly (readonly [string
     ['Map in page', `${tiles.count} tiles, ${formatBytes(tiles.bytes)}`],
     ['Received', `${formatBytes(bytesPerSecond)}/s, revision ${rev}`],
     ...alignment,
+    ...skewFacts(status?.pairSkew),
     ['Viewers', status ? String(status.viewers) : '–'],
     ['Server', page.live.serverVersion || '–'],
   ];
+}
+
+/** Shown where the cameras are timed one by one and really differ. */
+function skewFacts(skew: PairSkew | undefined): readonly (readonly [string, string])[] {
+  if (!skew || skew.largestMs === 0) return [];
+  const dropped = skew.droppedPairs > 0n ? `, ${skew.droppedPairs} dropped above ${skew.allowedMs} ms` : '';
+  return [['Left to right', `${skew.meanMs.toFixed(2)} ms, at most ${skew.largestMs.toFixed(1)}${dropped}`]];
 }
 
 function setFacts(list: HTMLElement, facts: readonly (readonly [string, string])[]): void {
