@@ -149,15 +149,14 @@ void add_start_options(OptionTable& table, Options& options) {
                           "how the world is levelled without --first-pose");
 }
 
-void parse_camera_size(const std::string& text, SourceOptions& source) {
-  const std::size_t x = text.find('x');
-  if (x == std::string::npos) throw UsageError("must be WIDTHxHEIGHT, for instance 1280x720");
-  const double width = parse_numbers(text.substr(0, x), 1)[0],
-               height = parse_numbers(text.substr(x + 1), 1)[0];
-  if (std::min(width, height) < 0 || std::max(width, height) > 16384)
+/// "1280x720"
+void parse_camera_size(std::string text, SourceOptions& source) {
+  std::replace(text.begin(), text.end(), 'x', ',');
+  const std::vector<double> size = parse_numbers(text, 2);
+  if (std::min(size[0], size[1]) < 0 || std::max(size[0], size[1]) > 16384)
     throw UsageError("allowed: 0x0 (640x480) to 16384x16384");
-  source.camera_width_px = static_cast<int>(width);
-  source.camera_height_px = static_cast<int>(height);
+  source.camera_width_px = static_cast<int>(size[0]);
+  source.camera_height_px = static_cast<int>(size[1]);
 }
 
 }  // namespace
