@@ -1,7 +1,6 @@
 #include "server/pipeline.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "mapping/stereo/row_offset.hpp"
@@ -16,13 +15,6 @@ constexpr std::size_t kFrameQueue = 2;
 constexpr std::chrono::milliseconds kStatusEvery{500};
 constexpr const char* kPlaceUnknown =
     "not found again after a loss: show a mapped place (needs loop closure)";
-
-std::string words_of_row_offset(double offset_px) {
-  char px[16];
-  std::snprintf(px, sizeof px, "%.1f", std::abs(offset_px));
-  return std::string("rows of the right picture lie ") + px + " px " + (offset_px > 0 ? "lower" : "higher") +
-         " than those of the left: the calibration does not fit the cameras any more; calibrate again";
-}
 
 }  // namespace
 

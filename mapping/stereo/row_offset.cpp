@@ -1,16 +1,18 @@
 #include "mapping/stereo/row_offset.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <vector>
 
 namespace flogmap {
 namespace {
 
-constexpr int kCell = 32;        // at most one corner in each square of so many pixels
-constexpr int kHalf = 5;         // a patch is 11 x 11
-constexpr int kMostRows = 6;     // looked for so far up and down; the last row is no answer
+constexpr int kCell = 32;          // at most one corner in each square of so many pixels
+constexpr int kHalf = 5;           // a patch is 11 x 11
+constexpr int kMostRows = 6;       // looked for so far up and down; the last row is no answer
 constexpr int kLeastGradient = 6;  // grey levels per pixel, mean over the patch, along rows and along columns
 constexpr int kMostDifference = 14;  // grey levels per pixel
 constexpr double kLead = 1.25;       // the second best place is worse by this factor
@@ -99,7 +101,8 @@ int mean_brightness(const Image<std::uint8_t>& image) {
 
 }  // namespace
 
-std::optional<RowOffset> measure_row_offset(const RectifiedFrame& pair, int min_disparity, int num_disparities) {
+std::optional<RowOffset> measure_row_offset(const RectifiedFrame& pair, int min_disparity,
+                                            int num_disparities) {
   if (pair.left.empty()) return std::nullopt;
   const int brightness = mean_brightness(pair.left) - mean_brightness(pair.right);
   std::vector<double> offsets;
@@ -121,13 +124,21 @@ std::optional<RowOffset> measure_row_offset(const RectifiedFrame& pair, int min_
   return RowOffset{offsets[offsets.size() / 2], static_cast<int>(offsets.size())};
 }
 
+std::string words_of_row_offset(double offset_px) {
+  char px[16];
+  std::snprintf(px, sizeof px, "%.1f", std::abs(offset_px));
+  return std::string("rows of the right picture lie ") + px + " px " + (offset_px > 0 ? "lower" : "higher") +
+         " than those of the left: the calibration does not fit the cameras any more; calibrate again";
+}
+
 std::optional<double> RowWatch::add(const RectifiedFrame& pair) {
   if (frame_++ % kEvery == 0) {
     if (const auto offset = measure_row_offset(pair, min_disparity_, num_disparities_))
       last_px_[num_measured_++ % 3] = offset->median_px;
   }
   if (num_measured_ < 3) return std::nullopt;
-  return std::max(std::min(last_px_[0], last_px_[1]), std::min(std::max(last_px_[0], last_px_[1]), last_px_[2]));
+  return std::max(std::min(last_px_[0], last_px_[1]),
+                  std::min(std::max(last_px_[0], last_px_[1]), last_px_[2]));
 }
 
 void RowWatch::reset() { frame_ = num_measured_ = 0; }

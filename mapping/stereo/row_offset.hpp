@@ -2,12 +2,14 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "camera/stereo_frame.hpp"
 
 namespace flogmap {
 
-/// Rows that differ by more than this cost the matcher answers: the calibration does not fit the cameras any more.
+/// Rows that differ by more than this cost the matcher answers: the calibration does not fit the cameras any
+/// more.
 inline constexpr double kTolerableRowOffset_px = 0.75;
 
 struct RowOffset {
@@ -15,10 +17,14 @@ struct RowOffset {
   int num_matches = 0;   // corners it rests on
 };
 
-/// Looks for corners of the left picture in the right one, some rows up and down as well. Disparities are looked for
-/// in [min_disparity, min_disparity + num_disparities). Nothing if too few corners are found or they disagree, as on
-/// a bare wall.
-std::optional<RowOffset> measure_row_offset(const RectifiedFrame& pair, int min_disparity, int num_disparities);
+/// Looks for corners of the left picture in the right one, some rows up and down as well. Disparities are
+/// looked for in [min_disparity, min_disparity + num_disparities). Nothing if too few corners are found or
+/// they disagree, as on a bare wall.
+std::optional<RowOffset> measure_row_offset(const RectifiedFrame& pair, int min_disparity,
+                                            int num_disparities);
+
+/// What a user should know of an intolerable one.
+std::string words_of_row_offset(double offset_px);
 
 /// Measures a pair now and then, since it costs milliseconds.
 class RowWatch {

@@ -129,11 +129,16 @@ void outrank_what_viewers_know(StoredMap& map) {
 }
 
 /// Takes up the map that the store holds, if there is one.
-ContinuedMap continue_stored(const MapStore& store, const Options& options, MappingSession& session) {
+ContinuedMap continue_stored(MapStore& store, const Options& options, MappingSession& session) {
   std::optional<StoredMap> stored = store.load();
   if (!stored) return {};
   check_same_grid(options.store, stored->info.grid, options.flog.grid);
-  if (!store.ended_cleanly()) outrank_what_viewers_know(*stored);
+  if (!store.ended_cleanly()) {
+    outrank_what_viewers_know(*stored);
+    // Now, while nothing is mapped; later it would hold up the tiles of the last second.
+    store.begin(*stored);
+    store.commit();
+  }
   session.integrator.restore(snapshot_of(*stored));
   // A robot is where it was switched off; a recording begins where it always does.
   if (session.source->info().live && !stored->trajectory.empty() && !options.first_pose) {

@@ -86,8 +86,8 @@ TEST(ProgramStore, KilledAtAnyMomentItLacksAtMostTheLastSecond) {
     late += map.revision < a_second_before ? 1 : 0;
   }
   // On a machine that does much else besides, writing may now and then take longer than the second leaves.
-  RecordProperty("late", late);
-  EXPECT_LE(late, std::max(1, num_kills() / 10));
+  std::printf("%d of %d kills came before a second old change was durable\n", late, num_kills());
+  EXPECT_LE(late, 1 + num_kills() / 50);
 }
 
 void limit_files_of(const RunningProgram& program, rlim_t bytes) {

@@ -13,7 +13,8 @@ Image<std::uint8_t> blurred_down(const Image<std::uint8_t>& image) {
   Image<std::uint8_t> out = image;
   for (int y = 1; y + 1 < image.height; ++y) {
     for (int x = 0; x < image.width; ++x)
-      out.at(x, y) = static_cast<std::uint8_t>((image.at(x, y - 1) + 2 * image.at(x, y) + image.at(x, y + 1)) / 4);
+      out.at(x, y) =
+          static_cast<std::uint8_t>((image.at(x, y - 1) + 2 * image.at(x, y) + image.at(x, y + 1)) / 4);
   }
   return out;
 }
@@ -26,7 +27,8 @@ RectifiedFrame pair_with_offset(int rows) {
   const Image<std::uint8_t> right = blurred_down(pair.right);
   for (int y = 0; y < right.height; ++y) {
     for (int x = 0; x < right.width; ++x)
-      pair.right.at(x, y) = static_cast<std::uint8_t>(right.at(x, std::clamp(y - rows, 0, right.height - 1)) * 0.9);
+      pair.right.at(x, y) =
+          static_cast<std::uint8_t>(right.at(x, std::clamp(y - rows, 0, right.height - 1)) * 0.9);
   }
   return pair;
 }
