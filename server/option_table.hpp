@@ -19,7 +19,16 @@ namespace flogmap {
 /// Bad usage or input: one line for the user, exit code 2.
 class UsageError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// Always one line: keys and values of a file may hold line breaks, which become spaces.
+  explicit UsageError(std::string message) : std::runtime_error(on_one_line(std::move(message))) {}
+
+ private:
+  static std::string on_one_line(std::string text) {
+    for (char& c : text) {
+      if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    }
+    return text;
+  }
 };
 
 struct Option {

@@ -29,10 +29,8 @@ void cells_to_bytes(std::span<const Cell> cells, std::vector<std::uint8_t>& byte
 
 struct TileCodec::Buffers {
   struct Free {
-    void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
-    void operator()(libdeflate_decompressor* decompressor) const {
-      libdeflate_free_decompressor(decompressor);
-    }
+    void operator()(libdeflate_compressor* tool) const { libdeflate_free_compressor(tool); }
+    void operator()(libdeflate_decompressor* tool) const { libdeflate_free_decompressor(tool); }
   };
   std::unique_ptr<libdeflate_compressor, Free> compressor{libdeflate_alloc_compressor(kCompression)};
   std::unique_ptr<libdeflate_decompressor, Free> decompressor{libdeflate_alloc_decompressor()};

@@ -89,6 +89,7 @@ TEST_F(OptionTableTest, ErrorsNameFileKeyValueAndWhatIsAllowed) {
 
 TEST_F(OptionTableTest, UnknownKeysAreRefusedButThoseOfOtherCommandsPassedOver) {
   EXPECT_THAT(failure({"--config", config(R"({"cel-size": 0.02})")}), HasSubstr("unknown key 'cel-size'"));
+  EXPECT_THAT(failure({"--config", config(R"({"cel\nsize": 0.02})")}), HasSubstr("unknown key 'cel size'"));
   EXPECT_EQ(failure({"--config", config(R"({"listen": "127.0.0.1:1"})")}), "accepted");
 }
 
