@@ -1,6 +1,5 @@
 #include "server/pipeline.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "mapping/stereo/row_offset.hpp"
@@ -255,10 +254,8 @@ void Pipeline::report(const Captured& captured, FrontEndResult& result) {
     counters_.tracked += result.tracking.has_pose() ? 1 : 0;
     counters_.lost += result.tracking.state == TrackingState::lost ? 1 : 0;
     if (result.world_from_camera) put_into_map(timestamp_ns, result);
-    counters_.warnings.clear();
-    if (!result.tracking.reason.empty()) counters_.warnings.push_back(result.tracking.reason);
-    if (result.row_offset_px && std::abs(*result.row_offset_px) > kTolerableRowOffset_px)
-      counters_.warnings.push_back(words_of_row_offset(*result.row_offset_px));
+    counters_.warnings = {result.tracking.reason, words_of_row_offset(result.row_offset_px)};
+    std::erase(counters_.warnings, "");
   }
   TrackingReport tracked;
   tracked.timestamp_ns = timestamp_ns;

@@ -28,14 +28,6 @@ struct RowConstants {
   bool paper_mode;
 };
 
-/// Rays of one row, by columns of numbers.
-struct RowRays {
-  std::vector<float> hit_m, width_m, run_per_rise, end_m;
-  std::vector<std::uint16_t> bin;  // kNoRay where there is none
-
-  explicit RowRays(int count) : hit_m(count), width_m(count), run_per_rise(count), end_m(count), bin(count) {}
-};
-
 /// Bins of the pixels of a row, and where in their bins; kNoRay where the disparity is not a positive number.
 FLOGMAP_SIMD_CLONES
 void find_bins(const PixelRow& row, const RowConstants& k, const float* disparity_px, int step, int count,
@@ -120,6 +112,14 @@ RowConstants row_constants(const RayModel& model, const AzimuthBins& bins) {
 
 }  // namespace
 
+/// Rays of one row, by columns of numbers.
+struct FanRays::RowRays {
+  std::vector<float> hit_m, width_m, run_per_rise, end_m;
+  std::vector<std::uint16_t> bin;  // kNoRay where there is none
+
+  explicit RowRays(int count) : hit_m(count), width_m(count), run_per_rise(count), end_m(count), bin(count) {}
+};
+
 AzimuthSpread FanRays::spread(int bin) const {
   const AzimuthRange& range = range_.front()[bin];
   // Less than this much is rounding: all rays of the bin lie on one line, as those of a level camera do.
@@ -146,6 +146,24 @@ void FanRays::start_bins() {
   if (rays_.size() < next) rays_.resize(next);
 }
 
+void FanRays::count_rays(int thread, const std::uint16_t* bin, const std::uint8_t* part, int count) {
+  std::vector<std::uint32_t>& counts = place_[thread];
+  std::vector<AzimuthRange>& ranges = range_[thread];
+  for (int i = 0; i < count; ++i) {
+    if (bin[i] == kNoRay) continue;
+    ++counts[bin[i]];
+    ranges[bin[i]].join({part[i], part[i]});
+  }
+}
+
+void FanRays::place_rays(int thread, const std::uint16_t* bin, const RowRays& rays, int count) {
+  std::vector<std::uint32_t>& place = place_[thread];
+  for (int i = 0; i < count; ++i) {
+    if (bin[i] == kNoRay) continue;
+    rays_[place[bin[i]]++] = {rays.hit_m[i], rays.width_m[i], rays.run_per_rise[i], rays.end_m[i]};
+  }
+}
+
 void FanRays::sort(const RayModel& model, const View& view, int num_threads) {
   const Image<float>& d = view.disparity.px;
   bins_ = azimuth_bins(model, view.world_from_camera);
@@ -156,38 +174,26 @@ void FanRays::sort(const RayModel& model, const View& view, int num_threads) {
   range_.assign(num_threads, std::vector<AzimuthRange>(bins_.count()));
   begin_.assign(bins_.count() + 1, 0);
   std::vector<std::uint16_t> bin_of(std::size_t(num_rows) * num_columns);
-
-  const auto count_rays = [&](int row, std::vector<std::uint32_t>& counts, std::vector<AzimuthRange>& range,
-                              std::vector<std::uint8_t>& part) {
-    const int y = row * model.row_step;
-    std::uint16_t* bin = bin_of.data() + std::size_t(row) * num_columns;
-    find_bins(pixel_row(model, view.world_from_camera, bins_.heading, y), constants, d.row(y),
-              model.column_step, num_columns, bin, part.data());
-    for (int i = 0; i < num_columns; ++i) {
-      if (bin[i] == kNoRay) continue;
-      ++counts[bin[i]];
-      range[bin[i]].join({part[i], part[i]});
-    }
+  const auto row_at = [&](int row) {
+    return pixel_row(model, view.world_from_camera, bins_.heading, row * model.row_step);
   };
-  const auto place_rays = [&](int row, std::vector<std::uint32_t>& place, RowRays& rays) {
-    const int y = row * model.row_step;
-    const std::uint16_t* bin = bin_of.data() + std::size_t(row) * num_columns;
-    see_from_above(pixel_row(model, view.world_from_camera, bins_.heading, y), constants, d.row(y),
-                   model.column_step, num_columns, rays.hit_m.data(), rays.width_m.data(),
-                   rays.run_per_rise.data(), rays.end_m.data());
-    for (int i = 0; i < num_columns; ++i) {
-      if (bin[i] == kNoRay) continue;
-      rays_[place[bin[i]]++] = {rays.hit_m[i], rays.width_m[i], rays.run_per_rise[i], rays.end_m[i]};
-    }
-  };
+  const auto disparities = [&](int row) { return d.row(row * model.row_step); };
   std::barrier counted(num_threads, [this]() noexcept { start_bins(); });
   run_on_threads(num_threads, [&](int thread) {
     const int first = num_rows * thread / num_threads, last = num_rows * (thread + 1) / num_threads;
     std::vector<std::uint8_t> part(num_columns);
-    for (int row = first; row < last; ++row) count_rays(row, place_[thread], range_[thread], part);
+    for (int row = first; row < last; ++row) {
+      std::uint16_t* bin = bin_of.data() + std::size_t(row) * num_columns;
+      find_bins(row_at(row), constants, disparities(row), model.column_step, num_columns, bin, part.data());
+      count_rays(thread, bin, part.data(), num_columns);
+    }
     counted.arrive_and_wait();
     RowRays rays(num_columns);
-    for (int row = first; row < last; ++row) place_rays(row, place_[thread], rays);
+    for (int row = first; row < last; ++row) {
+      see_from_above(row_at(row), constants, disparities(row), model.column_step, num_columns,
+                     rays.hit_m.data(), rays.width_m.data(), rays.run_per_rise.data(), rays.end_m.data());
+      place_rays(thread, bin_of.data() + std::size_t(row) * num_columns, rays, num_columns);
+    }
   });
 }
 

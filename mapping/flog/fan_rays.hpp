@@ -45,6 +45,12 @@ class FanRays {
   [[nodiscard]] std::uint32_t size() const { return begin_.back(); }
 
  private:
+  struct RowRays;
+
+  /// Of one row: how many rays fall into each bin, and where in it.
+  void count_rays(int thread, const std::uint16_t* bin, const std::uint8_t* part, int count);
+  void place_rays(int thread, const std::uint16_t* bin, const RowRays& rays, int count);
+
   /// Counts become places: in each bin the rays of the first thread, then of the second ...
   void start_bins();
 

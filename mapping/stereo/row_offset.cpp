@@ -124,10 +124,11 @@ std::optional<RowOffset> measure_row_offset(const RectifiedFrame& pair, int min_
   return RowOffset{offsets[offsets.size() / 2], static_cast<int>(offsets.size())};
 }
 
-std::string words_of_row_offset(double offset_px) {
+std::string words_of_row_offset(std::optional<double> offset_px) {
+  if (!offset_px || std::abs(*offset_px) <= kTolerableRowOffset_px) return {};
   char px[16];
-  std::snprintf(px, sizeof px, "%.1f", std::abs(offset_px));
-  return std::string("rows of the right picture lie ") + px + " px " + (offset_px > 0 ? "lower" : "higher") +
+  std::snprintf(px, sizeof px, "%.1f", std::abs(*offset_px));
+  return std::string("rows of the right picture lie ") + px + " px " + (*offset_px > 0 ? "lower" : "higher") +
          " than those of the left: the calibration does not fit the cameras any more; calibrate again";
 }
 

@@ -23,8 +23,8 @@ struct RowOffset {
 std::optional<RowOffset> measure_row_offset(const RectifiedFrame& pair, int min_disparity,
                                             int num_disparities);
 
-/// What a user should know of an intolerable one.
-std::string words_of_row_offset(double offset_px);
+/// What a user should know of an offset; empty where it is tolerable or not known.
+std::string words_of_row_offset(std::optional<double> offset_px);
 
 /// Measures a pair now and then, since it costs milliseconds.
 class RowWatch {

@@ -128,6 +128,17 @@ void outrank_what_viewers_know(StoredMap& map) {
   }
 }
 
+/// Stored now, while nothing is mapped: later it would hold up the tiles of the last second. A disk that
+/// refuses it does not keep anybody from mapping; the store's writer tries again and says so.
+void store_outranked(MapStore& store, const StoredMap& map) {
+  try {
+    store.begin(map);
+    store.commit();
+  } catch (const std::runtime_error&) {
+    store.rollback();
+  }
+}
+
 /// Takes up the map that the store holds, if there is one.
 ContinuedMap continue_stored(MapStore& store, const Options& options, MappingSession& session) {
   std::optional<StoredMap> stored = store.load();
@@ -135,9 +146,7 @@ ContinuedMap continue_stored(MapStore& store, const Options& options, MappingSes
   check_same_grid(options.store, stored->info.grid, options.flog.grid);
   if (!store.ended_cleanly()) {
     outrank_what_viewers_know(*stored);
-    // Now, while nothing is mapped; later it would hold up the tiles of the last second.
-    store.begin(*stored);
-    store.commit();
+    store_outranked(store, *stored);
   }
   session.integrator.restore(snapshot_of(*stored));
   // A robot is where it was switched off; a recording begins where it always does.

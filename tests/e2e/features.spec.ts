@@ -1,5 +1,5 @@
 // One server for what a person can do with the map: each feature as it is used, by mouse and keys.
-import { expect, test, type Page } from '@playwright/test';
+import { expect, test, type Locator, type Page } from '@playwright/test';
 import { open, pixels, project, state } from './flog_page';
 import { Program } from './program';
 
@@ -122,15 +122,20 @@ async function endsOfAWay(page: Page, reach: Reach): Promise<[number, number][]>
   return [a, clear.reduce((best, p) => (away(p) > away(best) ? p : best), a)];
 }
 
-test('a route is found by two clicks, and where the robot gets to shrinks as it grows', async ({ page }) => {
+/** The route tool over a map that stands still, for a slim and low robot; the words of its card. */
+async function planRoutes(page: Page): Promise<Locator> {
   await open(page, `${program.url}/?fresh`);
   await settled(page);
   await page.locator('.map > canvas').focus();
   await page.keyboard.press('r');
   await setSlider(page, 'Robot radius', 0.1);
   await setSlider(page, 'Robot height', 0.7);
+  return page.locator('.robot-words');
+}
+
+test('a route is found by two clicks, and where the robot gets to shrinks as it grows', async ({ page }) => {
+  const words = await planRoutes(page);
   await page.getByRole('switch', { name: 'Start at the camera' }).click();
-  const words = page.locator('.robot-words');
   for (const [x, y] of await endsOfAWay(page, await reachAhead({ robot_radius_m: 0.15, robot_height_m: 0.7 }))) await page.locator('.map > canvas').click({ position: await project(page, x, y) });
   await expect(words).toHaveText(/Route: \d+\.\d\d m, least clearance \d\.\d\d m/);
   await expect(page.locator('.route-line')).toHaveCount(1);
@@ -144,13 +149,7 @@ test('a route is found by two clicks, and where the robot gets to shrinks as it 
 });
 
 test('a route from the camera takes one click', async ({ page }) => {
-  await open(page, `${program.url}/?fresh`);
-  await settled(page);
-  await page.locator('.map > canvas').focus();
-  await page.keyboard.press('r');
-  await setSlider(page, 'Robot radius', 0.1);
-  await setSlider(page, 'Robot height', 0.7);
-  const words = page.locator('.robot-words');
+  const words = await planRoutes(page);
   await expect(words).toHaveText(/click where to go/);
   const asked = { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ from: 'camera', robot_radius_m: 0.15, robot_height_m: 0.7 }) };
   const [, [x, y] = [0, 0]] = await endsOfAWay(page, await program.json<Reach>('maps/live/reachable', asked));

@@ -65,6 +65,13 @@ TEST(RowOffset, NeedsNoParticularSize) {
   }
 }
 
+TEST(RowOffset, IsPutIntoWordsOnlyWhereItHurts) {
+  EXPECT_EQ(words_of_row_offset(std::nullopt), "");
+  EXPECT_EQ(words_of_row_offset(-0.7), "");
+  EXPECT_NE(words_of_row_offset(-2.34).find("2.3 px higher"), std::string::npos);
+  EXPECT_NE(words_of_row_offset(2.34).find("2.3 px lower"), std::string::npos);
+}
+
 TEST(RowWatch, SpeaksOfTheMiddleOfThreeMeasuredPairs) {
   RowWatch watch(0, 32);
   const RectifiedFrame good = pair_with_offset(0), bad = pair_with_offset(3);
