@@ -71,6 +71,11 @@ PicturePairList list_images(const std::string& globs, double rate_hz) {
   PicturePairList list;
   const bool has_times = left.front().number >= kSmallestTime;
   if (!has_times) list.assumed = "the names hold no times; " + assumed_rate(rate_hz);
+  if (by_order && left.size() != right.size()) {
+    list.assumed += "; they hold no numbers either, and of " + std::to_string(left.size()) + " left and " +
+                    std::to_string(right.size()) +
+                    " right pictures those at the same place in order are taken as pairs";
+  }
   std::size_t l = 0, r = 0;
   while (l < left.size() || r < right.size()) {
     if (r == right.size() || (l < left.size() && left[l].number < right[r].number)) {

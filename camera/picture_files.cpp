@@ -59,6 +59,9 @@ Picture picture_from(const cv::Mat& decoded) {
 }  // namespace
 
 ReadPicture read_picture(const fs::path& file) {
+  std::error_code unknown;
+  if (fs::exists(file, unknown) && !fs::is_regular_file(file, unknown))  // a folder, or a device without end
+    return {{}, file.string() + ": not a file"};
   std::ifstream in(file, std::ios::binary);
   if (!in) return {{}, file.string() + ": cannot be opened"};
   const Bytes bytes{std::istreambuf_iterator<char>(in), {}};

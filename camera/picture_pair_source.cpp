@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "camera/calibration/calibration_checks.hpp"
+#include "camera/low_bits.hpp"
 #include "camera/picture_files.hpp"
 
 namespace flogmap {
@@ -35,6 +36,7 @@ PicturePairSource::PicturePairSource(std::string spec, PicturePairList list, boo
     throw std::runtime_error(spec_ + ": no stereo pair" + (why.empty() ? "" : "; " + why));
   }
   find_picture_size();
+  find_unused_bits();
   if (list_.calibration) fit_resolution(*list_.calibration, width_px_, height_px_, spec_);
 }
 
@@ -58,6 +60,23 @@ void PicturePairSource::find_picture_size() {
   throw std::runtime_error(spec_ + ": no readable pair; " + problem);
 }
 
+/// By pictures from all over the recording, for its start may be dark.
+void PicturePairSource::find_unused_bits() {
+  constexpr std::size_t kLooks = 8;
+  const std::size_t step = std::max<std::size_t>(1, list_.pairs.size() / kLooks);
+  std::optional<int> unused;
+  for (std::size_t i = 0; i < list_.pairs.size() && unused != 0; i += step) {
+    for (const auto& file : {list_.pairs[i].left, list_.pairs[i].right}) {
+      const ReadPicture look = read_picture(file);
+      if (look.problem.empty()) unused = std::min(unused.value_or(16), unused_bits(look.picture));
+    }
+  }
+  unused_bits_ = unused.value_or(0);
+  if (unused_bits_ == 0) return;
+  list_.assumed += (list_.assumed.empty() ? "" : "; ") + std::string("the 16-bit pictures use only ") +
+                   std::to_string(16 - unused_bits_) + " bits and are taken as such";
+}
+
 std::optional<StereoFrame> PicturePairSource::read(const PicturePair& pair) {
   StereoFrame frame{pair.timestamp_ns, {}, {}};
   for (const auto& [file, picture] :
@@ -73,6 +92,7 @@ std::optional<StereoFrame> PicturePairSource::read(const PicturePair& pair) {
       return std::nullopt;
     }
     *picture = std::move(result.picture);
+    shift_up(*picture, unused_bits_);
   }
   return frame;
 }

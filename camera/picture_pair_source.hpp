@@ -53,12 +53,14 @@ class PicturePairSource final : public StereoSource {
  private:
   std::optional<StereoFrame> read(const PicturePair& pair);
   void find_picture_size();
+  void find_unused_bits();
 
   std::string spec_;
   PicturePairList list_;
   bool loop_;
   std::size_t position_ = 0;
   int width_px_ = 0, height_px_ = 0;  // of the first readable pair; others are skipped
+  int unused_bits_ = 0;               // see low_bits.hpp; the same for all pictures
   std::atomic<bool> stopped_ = false;
 };
 

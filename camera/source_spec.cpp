@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "camera/calibration/calibration_checks.hpp"
 #include "camera/calibration/detect.hpp"
 #include "camera/euroc_source.hpp"
 #include "camera/images_source.hpp"
@@ -22,6 +23,7 @@ using Opener = std::unique_ptr<StereoSource> (*)(const SourceOptions& options, c
 
 std::unique_ptr<StereoSource> open_pairs(const SourceOptions& options, PicturePairList list) {
   if (!options.calibration_file.empty()) list.calibration = read_calibration(options.calibration_file);
+  if (list.calibration) check_baseline(*list.calibration);
   return std::make_unique<PicturePairSource>(options.spec, std::move(list), options.loop);
 }
 

@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <limits>
 #include <opencv2/videoio.hpp>
+#include <opencv2/videoio/registry.hpp>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "camera/calibration/calibration_checks.hpp"
 
@@ -20,7 +22,7 @@ class Video {
  public:
   Video(const std::string& spec, const std::string& file) : file_(file) {
     if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(spec + ": no such file: " + file);
-    if (!capture_.open(file)) throw std::runtime_error(spec + ": not a readable video: " + file);
+    if (!capture_.open(file, backend())) throw std::runtime_error(spec + ": not a readable video: " + file);
     rate_hz_ = capture_.get(cv::CAP_PROP_FPS);
     if (!(rate_hz_ > 0.01 && rate_hz_ < 1000)) rate_hz_ = 30;  // some files do not say
   }
@@ -44,6 +46,14 @@ class Video {
   }
 
  private:
+  /// FFmpeg where OpenCV has it: asked for any, OpenCV tries one after the other, and each complains of a
+  /// damaged file.
+  static int backend() {
+    const std::vector<cv::VideoCaptureAPIs> there = cv::videoio_registry::getStreamBackends();
+    return std::find(there.begin(), there.end(), cv::CAP_FFMPEG) != there.end() ? cv::CAP_FFMPEG
+                                                                                : cv::CAP_ANY;
+  }
+
   std::string file_;
   cv::VideoCapture capture_;
   double rate_hz_ = 30;

@@ -110,12 +110,40 @@ void set_pinhole(CameraIntrinsics& camera, double fx, double fy, double cx, doub
   camera.cy_px = cy;
 }
 
+void check_baseline(const StereoCalibration& calibration) {
+  constexpr double kLongestM = 10;
+  const double baseline_m = calibration.right_from_left.translation().norm();
+  if (baseline_m > kLongestM) {
+    throw std::runtime_error(calibration.origin + ": baseline must be at most 10 m, got " +
+                             std::to_string(baseline_m) + "; is it in millimetres?");
+  }
+}
+
+namespace {
+
+/// Where a calibration does not say its resolution, the middle of its pictures tells: lenses sit over it.
+void check_centre(const CameraIntrinsics& camera, const std::string& origin, const std::string& where) {
+  constexpr double kLeast = 0.3, kMost = 0.7;
+  const auto near_middle = [](double share) { return share > kLeast && share < kMost; };
+  if (near_middle(camera.cx_px / camera.width_px) && near_middle(camera.cy_px / camera.height_px)) return;
+  throw std::runtime_error(where + ": the optical centre of " + origin + ", " +
+                           list_text({camera.cx_px, camera.cy_px}) +
+                           " px, is far from the middle of pictures of " + std::to_string(camera.width_px) +
+                           "x" + std::to_string(camera.height_px) + "; it is for another resolution");
+}
+
+}  // namespace
+
 void fit_resolution(StereoCalibration& calibration, int width_px, int height_px, const std::string& where) {
   const auto size = [](int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);
   };
   for (CameraIntrinsics* camera : {&calibration.left, &calibration.right}) {
-    if (camera->width_px == 0) camera->width_px = width_px, camera->height_px = height_px;
+    if (camera->width_px == 0) {
+      camera->width_px = width_px;
+      camera->height_px = height_px;
+      check_centre(*camera, calibration.origin, where);
+    }
     if (camera->width_px == width_px && camera->height_px == height_px) continue;
     throw std::runtime_error(where + ": pictures are " + size(width_px, height_px) + ", but " +
                              calibration.origin + " is for " + size(camera->width_px, camera->height_px) +

@@ -26,6 +26,10 @@ void set_resolution(CameraIntrinsics& camera, const std::vector<double>& width_h
 void set_pinhole(CameraIntrinsics& camera, double fx, double fy, double cx, double cy,
                  const std::string& where);
 
+/// Throws if the cameras stand more than 10 m apart: units that are off by a thousand are the commonest
+/// mistake of all.
+void check_baseline(const StereoCalibration& calibration);
+
 /// Gives a calibration that knows no resolution (0) that of the pictures; throws std::runtime_error starting
 /// with `where` if it is for another one.
 void fit_resolution(StereoCalibration& calibration, int width_px, int height_px, const std::string& where);

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "camera/calibration/calibration_checks.hpp"
 #include "camera/calibration/euroc_calibration.hpp"
 #include "camera/calibration/kalibr_calibration.hpp"
 #include "camera/calibration/kitti_calibration.hpp"
@@ -68,16 +69,6 @@ StereoCalibration read_folder(const fs::path& folder) {
   throw std::runtime_error(folder.string() +
                            ": no calibration in this folder; looked for mav0/cam0/sensor.yaml, "
                            "left.yaml, calib.txt, calib.yaml, camchain.yaml");
-}
-
-/// Units that are off by a thousand are the commonest mistake of all.
-void check_baseline(const StereoCalibration& calibration) {
-  constexpr double kLongestM = 10;
-  const double baseline_m = calibration.right_from_left.translation().norm();
-  if (baseline_m > kLongestM) {
-    throw std::runtime_error(calibration.origin + ": baseline must be at most 10 m, got " +
-                             std::to_string(baseline_m) + "; is it in millimetres?");
-  }
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "camera/calibration/opencv_calibration.hpp"
 #include "camera/grey.hpp"
 #include "camera/images_source.hpp"
+#include "camera/low_bits.hpp"
 #include "camera/picture_files.hpp"
 #include "server/commands/commands.hpp"
 #include "server/commands/interrupt_watcher.hpp"
@@ -87,9 +88,10 @@ struct Sightings {
 };
 
 BoardSighting look_at(const std::filesystem::path& file, BoardDetector& detector, Sightings& sightings) {
-  const ReadPicture read = read_picture(file);
+  ReadPicture read = read_picture(file);
   if (!read.problem.empty()) return {{}, read.problem};
-  const Picture& picture = read.picture;
+  Picture& picture = read.picture;
+  shift_up(picture, unused_bits(picture));
   if (sightings.width_px == 0) sightings.width_px = picture.width, sightings.height_px = picture.height;
   if (picture.width != sightings.width_px || picture.height != sightings.height_px) {
     return {{},

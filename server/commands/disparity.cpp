@@ -1,5 +1,6 @@
 // flogmap disparity: one pair of pictures in, the disparity of the left one out.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "camera/calibration/detect.hpp"
+#include "camera/low_bits.hpp"
 #include "camera/picture_files.hpp"
 #include "camera/recording_writer.hpp"
 #include "camera/rectifier.hpp"
@@ -111,6 +113,8 @@ int compute(DisparityArguments arguments) {
                      std::to_string(frame.right.height) + ", but " + arguments.left + " is " +
                      std::to_string(frame.left.width) + "x" + std::to_string(frame.left.height));
   }
+  const int unused = std::min(unused_bits(frame.left), unused_bits(frame.right));
+  for (Picture* picture : {&frame.left, &frame.right}) shift_up(*picture, unused);
   const Rectifier rectifier(calibration_for(arguments, frame.left));
   const bool know_nearest = !arguments.calibration.empty();
   if (arguments.stereo.num_disparities == 0 && !know_nearest)

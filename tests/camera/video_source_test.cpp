@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <opencv2/videoio.hpp>
+#include <random>
 #include <stdexcept>
 
 #include "camera/source_spec.hpp"
@@ -85,6 +87,57 @@ TEST_F(Videos, WhatCannotBeReadIsRefusedInWords) {
   refused("video:" + path("l.avi") + "," + path("none.avi"), calibration_, "none.avi");
   refused("sbs:" + path("text.avi"), calibration_, "text.avi");
   refused("sbs:" + path("wide.avi"), "", "--calibration");
+}
+
+TEST_F(Videos, TwoFilesCanBeSoughtAndLooped) {
+  write_video("l.avi", 4, 64, 0);
+  write_video("r.avi", 4, 64, 5);
+  const auto source = open_source({.spec = "video:" + path("l.avi") + "," + path("r.avi"),
+                                   .calibration_file = calibration_,
+                                   .loop = true});
+  for (int i = 0; i < 6; ++i) expect_frame(source->next(), i % 4);
+  for (const int i : {3, 0, 2}) {
+    ASSERT_TRUE(source->seek(i * 50'000'000LL));
+    expect_frame(source->next(), i);
+  }
+}
+
+TEST_F(Videos, AFileCutOffInTheMiddleGivesItsBeginning) {
+  write_video("l.avi", 10, 64, 0);
+  write_video("r.avi", 10, 64, 5);
+  std::filesystem::resize_file(path("r.avi"), std::filesystem::file_size(path("r.avi")) * 8 / 10);
+  const auto source =
+      open_source({.spec = "video:" + path("l.avi") + "," + path("r.avi"), .calibration_file = calibration_});
+  int count = 0;
+  while (auto frame = source->next()) expect_frame(frame, count++);
+  EXPECT_GT(count, 2);
+  EXPECT_LT(count, 10);
+  EXPECT_EQ(source->skipped().count, 1);
+  EXPECT_THAT(source->skipped().last_reason, HasSubstr("r.avi"));
+}
+
+TEST_F(Videos, DamagedFilesNeverCrash) {
+  write_video("good.avi", 4, 128, 0);
+  std::ifstream in(path("good.avi"), std::ios::binary);
+  const std::string good{std::istreambuf_iterator<char>(in), {}};
+  std::mt19937 random(20261123);
+  for (int round = 0; round < 40; ++round) {
+    std::string bad = good;
+    for (int i = 0; i < 20; ++i) bad[random() % bad.size()] = static_cast<char>(random());
+    folder_.write("bad.avi", bad);
+    try {
+      const auto source = open_source({.spec = "sbs:" + path("bad.avi"), .calibration_file = calibration_});
+      std::int64_t last_ns = -1;
+      for (int i = 0; i < 20; ++i) {
+        const auto frame = source->next();
+        if (!frame) break;
+        EXPECT_GT(frame->timestamp_ns, last_ns);
+        last_ns = frame->timestamp_ns;
+      }
+    } catch (const std::runtime_error& refused) {
+      EXPECT_THAT(refused.what(), HasSubstr("sbs:"));
+    }
+  }
 }
 
 }  // namespace
