@@ -1,4 +1,6 @@
 // Bytes of a page into values. Nothing here is trusted.
+#include <google/protobuf/stubs/logging.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -61,9 +63,17 @@ std::optional<ClientMessage> read(const v1::Forget& from) {
   return forget;
 }
 
+/// Protobuf writes a line on stderr for each text that is no UTF-8: a stranger could fill the log with them.
+/// What is refused is said where the connection is closed.
+void silence_protobuf() {
+  static const bool silenced = (google::protobuf::SetLogHandler(nullptr), true);
+  (void)silenced;
+}
+
 }  // namespace
 
 std::optional<ClientMessage> decode_client_message(std::string_view bytes) {
+  silence_protobuf();
   v1::ClientMessage message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
   switch (message.message_case()) {

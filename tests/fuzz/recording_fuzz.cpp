@@ -1,5 +1,5 @@
 // Lists of recordings, parts between lines "=====": EuRoC's data.csv left, right and of the inertial sensor,
-// then KITTI's times.txt and calib.txt; and the first part as a trajectory.
+// then KITTI's times.txt, calib.txt and a fix of the inertial sensor; and the first part as a trajectory.
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -22,15 +22,26 @@ const ScratchFolder& prepared_folder() {
   static const ScratchFolder folder;
   static const bool prepared = [] {
     folder.write("euroc/mav0/imu0/sensor.yaml", kSensor);
-    for (const char* camera : {"image_0", "image_1"}) {
+    for (const char* camera : {"kitti/image_0", "kitti/image_1", "raw/image_00/data", "raw/image_01/data"}) {
       for (const char* picture : {"000000.png", "000001.png"}) {
-        folder.write(std::filesystem::path("kitti") / camera / picture, "");
+        folder.write(std::filesystem::path(camera) / picture, "");
       }
     }
     return true;
   }();
   (void)prepared;
   return folder;
+}
+
+/// A sequence and a raw drive of the same lists.
+void write_kitti(const ScratchFolder& folder, std::string_view times, std::string_view calibration,
+                 std::string_view fix) {
+  for (const char* file : {"kitti/times.txt", "raw/image_00/timestamps.txt"}) folder.write(file, times);
+  for (const char* file : {"kitti/calib.txt", "raw/calib_cam_to_cam.txt", "raw/calib_imu_to_velo.txt",
+                           "raw/calib_velo_to_cam.txt"}) {
+    folder.write(file, calibration);
+  }
+  folder.write("raw/oxts/data/0000000000.txt", fix);
 }
 
 template <typename Function>
@@ -49,12 +60,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto left = folder.write("euroc/mav0/cam0/data.csv", next_part(rest));
   folder.write("euroc/mav0/cam1/data.csv", next_part(rest));
   folder.write("euroc/mav0/imu0/data.csv", next_part(rest));
-  folder.write("kitti/times.txt", next_part(rest));
-  folder.write("kitti/calib.txt", rest);
+  const std::string_view times = next_part(rest), calibration = next_part(rest);
+  write_kitti(folder, times, calibration, rest);
   take_or_refuse([&] { (void)flogmap::list_euroc(folder.path() / "euroc", false); });
   take_or_refuse(
       [&] { (void)flogmap::inertial_up(folder.path() / "euroc/mav0/imu0", Eigen::Isometry3d::Identity()); });
-  take_or_refuse([&] { (void)flogmap::list_kitti(folder.path() / "kitti", true); });
+  for (const char* kitti : {"kitti", "raw"}) {
+    take_or_refuse([&] { (void)flogmap::list_kitti(folder.path() / kitti, true, 10); });
+  }
   take_or_refuse([&] { (void)flogmap::read_trajectory(left); });
   return 0;
 }

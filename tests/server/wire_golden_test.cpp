@@ -102,5 +102,12 @@ TEST(WireGolden, ClientMessagesAreUnderstood) {
   EXPECT_EQ(std::get<Ping>(decoded("ping").value()).nonce, 77U);
 }
 
+TEST(ClientMessages, TextThatIsNoUtf8IsRefusedWithoutALineInTheLog) {
+  const std::string hello("\x0a\x09\x0a\x01\x01\x12\x04\x0a\x02\xff\xfe", 11);  // its epoch is ff fe
+  ::testing::internal::CaptureStderr();
+  EXPECT_FALSE(decode_client_message(hello));
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
 }  // namespace
 }  // namespace flogmap
