@@ -16,6 +16,8 @@ using std::chrono::steady_clock;
 constexpr std::size_t kMaxWaitingQueries = 16;
 constexpr std::string_view kLogin = "/api/v1/login";
 constexpr std::string_view kLogout = "/api/v1/logout";
+constexpr std::string_view kStream =
+    "/api/v1/stream";  // HttpSession opens it; nothing else can be done there
 
 /// What no request should be able to bring about.
 ApiResponse fault(const std::string& path, const std::exception& error) {
@@ -23,9 +25,11 @@ ApiResponse fault(const std::string& path, const std::exception& error) {
   return problem(500, "internal", "a fault of the server");
 }
 
-ApiResponse busy() {
-  ApiResponse response = problem(503, "busy", "too many queries wait; try again soon");
-  response.headers.emplace_back("Retry-After", "1");
+ApiResponse busy() { return problem(503, "busy", "too many queries wait; try again soon"); }
+
+ApiResponse too_many_attempts() {
+  ApiResponse response = problem(429, "too-many-attempts", "wait a minute");
+  response.headers = {{"Retry-After", "60"}};
   return response;
 }
 
@@ -67,8 +71,23 @@ std::optional<ApiResponse> HttpApp::refuse(const ApiRequest& request) const {
   return std::nullopt;
 }
 
+void HttpApp::note_wrong_token(const ApiRequest& request, steady_clock::time_point now) {
+  access_.count_failure(request.remote_address, now);
+  log_event(LogLevel::warning, "wrong token", {{"remote", request.remote_address}});
+}
+
+/// A wrong bearer token counts as a wrong login does: who may not guess there may not guess here.
+std::optional<ApiResponse> HttpApp::refuse_guesses(const ApiRequest& request) {
+  if (request.authorization.empty() || access_.open_to_all()) return std::nullopt;
+  const auto now = steady_clock::now();
+  if (!access_.may_try(request.remote_address, now)) return too_many_attempts();
+  if (request.role == Role::none) note_wrong_token(request, now);
+  return std::nullopt;
+}
+
 std::optional<ApiResponse> HttpApp::refuse_stream(const ApiRequest& request, bool offers_protocol) {
   if (auto refused = refuse(request)) return refused;
+  if (auto refused = refuse_guesses(request)) return refused;
   if (request.role == Role::none) return problem(401, "token-needed", "log in first, or send a token");
   if (!offers_protocol) {
     return problem(400, "no-common-protocol", "offer flogmap.v1.proto", "Sec-WebSocket-Protocol");
@@ -101,7 +120,9 @@ ApiAnswer HttpApp::dispatch(ApiRequest& request) {
   } else if (auto refused = refuse(request)) {
     return *refused;
   }
+  if (auto refused = refuse_guesses(request)) return *refused;
   if (request.path == kLogin || request.path == kLogout) return log_in(request);
+  if (request.path == kStream) return only_allowed(request, "GET");
   const bool reads = request.method == Method::get || request.method == Method::head;
   if (request.path == "/" || web_.holds(request.path)) {
     return reads ? web_.answer(request) : only_allowed(request, "GET, HEAD");
@@ -122,16 +143,11 @@ ApiResponse HttpApp::log_in(const ApiRequest& request) {
     return response;
   }
   if (access_.open_to_all()) return json_response(R"({"role":"control"})");
-  if (!access_.may_try(request.remote_address, now)) {
-    ApiResponse response = problem(429, "too-many-attempts", "wait a minute");
-    response.headers = {{"Retry-After", "60"}};
-    return response;
-  }
+  if (!access_.may_try(request.remote_address, now)) return too_many_attempts();
   const std::string secret = secret_of(request);
   const auto cookie = access_.log_in(secret, now);
   if (!cookie) {
-    access_.count_failure(request.remote_address, now);
-    log_event(LogLevel::warning, "wrong token", {{"remote", request.remote_address}});
+    note_wrong_token(request, now);
     return problem(401, "wrong-token", "this is no token of this server", "token");
   }
   const Role role = access_.role_of("Bearer " + secret, {}, now);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 
 #include "server/access.hpp"
@@ -35,6 +36,8 @@ class HttpApp {
 
  private:
   std::optional<ApiResponse> refuse(const ApiRequest& request) const;
+  std::optional<ApiResponse> refuse_guesses(const ApiRequest& request);
+  void note_wrong_token(const ApiRequest& request, std::chrono::steady_clock::time_point now);
   ApiAnswer dispatch(ApiRequest& request);
   ApiResponse log_in(const ApiRequest& request);
   void run(const std::string& path, ApiJob job, Done done);

@@ -5,6 +5,7 @@
 #include <boost/asio/write.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/read.hpp>
+#include <boost/beast/http/rfc7230.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
 #include <utility>
@@ -48,6 +49,14 @@ Method method_of(http::verb verb) {
     default:
       return Method::other;
   }
+}
+
+/// What RFC 6455 section 4.2.1 asks of a handshake, so that every refusal is ours.
+template <typename Request>
+bool opens_websocket(const Request& message) {
+  constexpr std::size_t kKeyLength = 24;  // 16 bytes in base64
+  return beast::websocket::is_upgrade(message) && message[http::field::sec_websocket_version] == "13" &&
+         message[http::field::sec_websocket_key].size() == kKeyLength;
 }
 
 }  // namespace
@@ -177,12 +186,13 @@ template <typename Stream>
 void HttpSession<Stream>::open_stream() {
   const auto& message = parser_->get();
   context_.app.identify(request_);
-  if (!beast::websocket::is_upgrade(message)) {
-    ApiResponse response = problem(400, "upgrade-needed", "open this with a WebSocket");
+  if (!opens_websocket(message)) {
+    ApiResponse response = problem(400, "upgrade-needed", "open this with a WebSocket of version 13");
+    response.headers.emplace_back("Sec-WebSocket-Version", "13");
     return respond(std::move(response), false);
   }
-  const std::string offered = text(message[http::field::sec_websocket_protocol]);
-  const bool offers_protocol = offered.find(kStreamProtocol) != std::string::npos;
+  http::token_list offered(message[http::field::sec_websocket_protocol]);
+  const bool offers_protocol = offered.exists({kStreamProtocol.data(), kStreamProtocol.size()});
   if (auto refused = context_.app.refuse_stream(request_, offers_protocol)) {
     return respond(std::move(*refused), false);
   }

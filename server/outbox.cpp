@@ -13,8 +13,9 @@ using std::chrono::nanoseconds;
 constexpr std::size_t kSortedAhead = 256;  // more than a batch holds
 constexpr std::uint64_t kTypicalLayerBytes = 1500;
 
+/// Between once an hour and 1000 Hz: the inverse of less is more nanoseconds than there are.
 std::chrono::nanoseconds interval_of(double hz) {
-  return duration_cast<nanoseconds>(std::chrono::duration<double>(1.0 / hz));
+  return duration_cast<nanoseconds>(std::chrono::duration<double>(1.0 / std::clamp(hz, 1.0 / 3600, 1000.0)));
 }
 
 }  // namespace
@@ -32,7 +33,8 @@ void Outbox::resume(const Resume& known, const ServedMap& map) {
 
 void Outbox::subscribe(const Subscribe& wish, const ServedMap& map) {
   pose_interval_.reset();
-  if (wish.pose_hz > 0) pose_interval_ = interval_of(std::min(wish.pose_hz, 1000.0));
+  next_pose_ = {};
+  if (wish.pose_hz > 0) pose_interval_ = interval_of(wish.pose_hz);
   if (!wish.features) features_ = nullptr;
   for (Bytes& image : images_) image = nullptr;
   if (subscribed_ && wish.tiles == choice_) return;
@@ -195,7 +197,8 @@ Bytes Outbox::next_control() {
 Bytes Outbox::next_pose(Time now) {
   if (pose_ && !pose_interval_) pose_ = nullptr;
   if (pose_ && now >= next_pose_) {
-    next_pose_ = std::max(next_pose_ + *pose_interval_, now);
+    next_pose_ += *pose_interval_;
+    if (next_pose_ <= now) next_pose_ = now + *pose_interval_;
     return std::exchange(pose_, nullptr);
   }
   if (features_ && !pose_) return std::exchange(features_, nullptr);

@@ -17,8 +17,7 @@ class SmallMap {
     info_.grid.layer_bounds_m = {0.05, 0.75, 1.45};
     info_.full_confidence_rays.assign(2, 60);
     for (std::uint16_t look = 0; look < 2; ++look) looks_[look] = tile_of(look);
-    MapBegin begin{
-        .epoch = "0000000000000001", .info = info_, .camera = {435, 376, 240, 0.11, 752, 480}};
+    MapBegin begin{.epoch = "0000000000000001", .info = info_, .camera = {435, 376, 240, 0.11, 752, 480}};
     for (int i = 0; i < 4; ++i) begin.tiles.push_back(update({i % 2, i / 2}));
     begin.revision = revision_;
     for (int i = 0; i < 20; ++i) begin.trajectory.push_back(entry());
@@ -45,15 +44,14 @@ class SmallMap {
     return state_.live->update(revision_, updates);
   }
 
-  void rewrite_path() {
-    state_.live->rewrite(std::vector<TrajectoryEntry>(state_.live->trajectory()));
-  }
+  void rewrite_path() { state_.live->rewrite(std::vector<TrajectoryEntry>(state_.live->trajectory())); }
 
  private:
   static ServedMap encoded(const MapBegin& begin) {
     ServedMap map("live", begin, Operators::algebraic);
     for (Slot slot = 0; slot < map.board().num_slots(); ++slot) {
-      for (const Planes planes : {Planes::value, Planes::evidence}) (void)map.board().message(slot, {{}, planes});
+      for (const Planes planes : {Planes::value, Planes::evidence})
+        (void)map.board().message(slot, {{}, planes});
     }
     return map;
   }

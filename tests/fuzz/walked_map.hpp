@@ -15,7 +15,7 @@ class WalkedMap {
   explicit WalkedMap(const ServeOptions& options = {}) : state_(options, session_, {}) {
     state_.live =
         std::make_unique<ServedMap>("live", walk_.begin("0000000000000001", "started"), Operators::algebraic);
-    for (int i = 0; i < 40; ++i) step();
+    for (int i = 0; i < 12; ++i) step();
     state_.pictures = walk_.pictures();
     state_.status = walk_.status();
     state_.stored["empty"] = std::make_unique<ServedMap>(

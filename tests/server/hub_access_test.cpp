@@ -58,6 +58,19 @@ TEST(HubAccess, ALoginGivesACookieThatScriptsCannotRead) {
   EXPECT_EQ(http(server.port(), "POST", "/api/v1/login", form, "token=view-secret").status, 429);
 }
 
+TEST(HubAccess, TenWrongBearerTokensFromAnAddressAreEnoughForAMinute) {
+  ServeOptions options;
+  options.tokens = {{Role::view, "view-secret"}};
+  LoopbackHub server(options);
+  const auto status = [&](const std::string& secret) {
+    return http(server.port(), "GET", "/api/v1/version", {{"Authorization", "Bearer " + secret}}).status;
+  };
+  EXPECT_EQ(status("view-secret"), 200);
+  for (int i = 0; i < 10; ++i) EXPECT_NE(status("guess-" + std::to_string(i)), 429);
+  EXPECT_EQ(status("view-secret"), 429);
+  EXPECT_EQ(http(server.port(), "GET", "/healthz").status, 200);  // who does not guess is served
+}
+
 TEST(HubAccess, TooManyConnectionsAreTurnedAway) {
   ServeOptions options;
   options.max_connections_per_address = 2;

@@ -115,6 +115,26 @@ TEST_F(ProtocolTest, ChangesComeAtNoMoreThanTenHertz) {
   EXPECT_GE(num_batches, 15);
 }
 
+TEST_F(ProtocolTest, AnyRateOfPosesMayBeAskedForAndTheNextOneCountsAtOnce) {
+  Outbox outbox;
+  const auto ask = [&](double pose_hz) { outbox.subscribe({{}, {}, pose_hz, false}, *state_.live); };
+  const auto sends_pose = [&](StreamProtocol::Time now) {
+    outbox.pose(to_shared("pose"));
+    const Bytes message = outbox.next(*state_.live, now);
+    return message && *message == "pose";
+  };
+  ask(1);
+  while (outbox.next(*state_.live, start_)) outbox.acknowledge(0, start_);
+  for (const double seldom : {5e-324, 1e-80, 0.001}) {
+    ask(seldom);
+    EXPECT_TRUE(sends_pose(start_));
+    EXPECT_FALSE(sends_pose(start_ + std::chrono::minutes(10)));
+  }
+  ask(20);
+  EXPECT_TRUE(sends_pose(start_));
+  EXPECT_TRUE(sends_pose(start_ + std::chrono::milliseconds(50)));
+}
+
 TEST_F(ProtocolTest, VisibleTilesComeFirst) {
   StreamProtocol protocol(state_, Role::view, start_);
   protocol.receive(hello_frame(), start_);
