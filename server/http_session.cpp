@@ -55,8 +55,9 @@ Method method_of(http::verb verb) {
 template <typename Request>
 bool opens_websocket(const Request& message) {
   constexpr std::size_t kKeyLength = 24;  // 16 bytes in base64
+  const boost::string_view key = message[http::field::sec_websocket_key];
   return beast::websocket::is_upgrade(message) && message[http::field::sec_websocket_version] == "13" &&
-         message[http::field::sec_websocket_key].size() == kKeyLength;
+         key.size() == kKeyLength && key.ends_with("==");
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ TEST_F(Attack, EveryMalformedRequestGetsItsStatus) {
       {"no such layer", [&] { return get("/api/v1/maps/live/layers/" + word() + "/tiles/0/0/0"); }, 404},
       {"no such level",
        [&] { return get("/api/v1/maps/live/layers/fused/tiles/" + std::to_string(6 + random_()) + "/0/0"); },
-       422},
+       400},
       {"not a number", [&] { return get("/api/v1/maps/live/cell?x=1&y=" + word()); }, 400},
       {"unknown style", [&] { return get("/api/v1/maps/live/image.png?style=" + word()); }, 400},
       {"another epoch", [&] { return get("/api/v1/maps/live/changes?since=1&epoch=" + word()); }, 409},
