@@ -222,6 +222,8 @@ TEST_F(Contract, EveryPathSaysWhichMethodsItTakesAndRefusesTheOthers) {
 }
 
 TEST_F(Contract, TokensAndRolesAreAskedForWhereTheDocumentSays) {
+  constexpr int kMostGuesses = 5;  // after ten of them nobody is heard for a minute
+  int guesses = 0;
   for (const auto& path : document_["paths"]) {
     const std::string target = some_target(path.first.as<std::string>());
     for (const auto& described : path.second) {
@@ -231,13 +233,25 @@ TEST_F(Contract, TokensAndRolesAreAskedForWhereTheDocumentSays) {
       const bool control = described.second["x-role"].IsDefined();
       const int stranger = ask(method, target, {}, "", "").status;
       EXPECT_EQ(stranger == 401, !open) << method << " " << target << " " << stranger;
-      EXPECT_EQ(ask(method, target, {}, "", "Bearer wrong-secret").status == 401, !open) << target;
+      if (!open && guesses++ < kMostGuesses) {
+        EXPECT_EQ(ask(method, target, {}, "", "Bearer wrong-secret").status, 401) << target;
+      }
       const int viewer = ask(method, target, {}, "", kView).status;
       EXPECT_EQ(viewer == 403, control) << method << " " << target << " " << viewer;
     }
   }
 }
 
+TEST_F(Contract, TheLogIsOneJsonObjectALine) {
+  ASSERT_TRUE(program_->wait_for_log("a map begins", std::chrono::seconds(10)));
+  for (const std::string& line : program_->log()) {
+    const json event = json::parse(line, nullptr, false);
+    ASSERT_TRUE(event.is_object()) << line;
+    for (const char* field : {"time", "level", "message"}) EXPECT_TRUE(event.contains(field)) << line;
+  }
+}
+
+// The last one: from then on nobody is heard here for a minute.
 TEST_F(Contract, TenWrongTokensAreEnoughForAMinute) {
   int status = 0;
   for (int i = 0; i < 12 && status != 429; ++i) {
@@ -249,15 +263,6 @@ TEST_F(Contract, TenWrongTokensAreEnoughForAMinute) {
     }
   }
   EXPECT_EQ(status, 429);
-}
-
-TEST_F(Contract, TheLogIsOneJsonObjectALine) {
-  ASSERT_TRUE(program_->wait_for_log("a map begins", std::chrono::seconds(10)));
-  for (const std::string& line : program_->log()) {
-    const json event = json::parse(line, nullptr, false);
-    ASSERT_TRUE(event.is_object()) << line;
-    for (const char* field : {"time", "level", "message"}) EXPECT_TRUE(event.contains(field)) << line;
-  }
 }
 
 TEST(Program, EndsWithinTenSecondsAndSaysGoodbye) {
