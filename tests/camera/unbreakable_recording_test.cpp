@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <ctime>
 #include <random>
 #include <thread>
 
@@ -71,6 +72,22 @@ TEST(UnbreakableRecording, NoFinishedPairIsLostByAKill) {
     ::waitpid(writer, nullptr, 0);
     EXPECT_GE(count_whole_pairs(folder.path()), finished);
   }
+}
+
+TEST(UnbreakableRecording, TwoCamerasAt60HzAreWrittenInTime) {
+  // By the time that the processor works, which does not depend on what else the machine does.
+  constexpr int kPairs = 60;
+  constexpr double kRateHz = 60;
+  const testing::TemporaryFolder folder;
+  std::mt19937 random(3);
+  const Picture left = noise(752, 480, random), right = noise(752, 480, random);
+  RecordingWriter writer(folder.path(), plain_pair(752, 480), {.compress = false});
+  const std::clock_t start = std::clock();
+  for (std::int64_t i = 0; i < kPairs; ++i) writer.write({i * 16'666'667, left, right});
+  const double busy_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  RecordProperty("pairs_per_s", std::to_string(kPairs / busy_s));
+  EXPECT_LT(busy_s, kPairs / kRateHz);
+  EXPECT_EQ(count_whole_pairs(folder.path()), kPairs);
 }
 
 /// As on a full disk: no file can grow beyond `limit` bytes. Exit code 0 if the writer said so in words.
