@@ -61,6 +61,18 @@ void pair_by_time(const std::vector<TimedFile>& left, const std::vector<TimedFil
   list.skew = all;
 }
 
+/// What `flogmap record` noted of a live recording's pairs, whose pictures it lists under one time.
+std::optional<PairSkew> captured_skew(const fs::path& capture) {
+  if (!fs::is_regular_file(capture)) return std::nullopt;
+  PairSkew all;
+  for (const CsvRow& row : read_csv(capture)) {
+    std::int64_t skew_ns = 0;
+    if (row.fields.size() > 1 && parse_number(row.fields[1], skew_ns)) all.histogram.add(skew_ns);
+  }
+  all.allowed_ms = all.histogram.largest_ms;
+  return all.histogram.total() > 0 ? std::optional(all) : std::nullopt;
+}
+
 fs::path camera_folder(const fs::path& folder, const char* name) {
   const fs::path base = fs::is_directory(folder / "mav0") ? folder / "mav0" : folder;
   if (!fs::is_directory(base / name)) {
@@ -82,6 +94,7 @@ PicturePairList list_euroc(const fs::path& folder, bool needs_calibration) {
       list.up_in_left_camera = inertial_up(cam0.parent_path() / "imu0", list.calibration->body_from_left);
   }
   pair_by_time(list_camera(cam0, list), list_camera(cam1, list), list);
+  if (const auto captured = captured_skew(cam0.parent_path() / "capture.csv")) list.skew = captured;
   return list;
 }
 

@@ -167,6 +167,10 @@ TEST(UnbreakableRecording, HowALivePairWasTakenStandsBesideIt) {
   std::getline(in, line);
   EXPECT_EQ(line, "7,-300,5000,2");
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "recording.json"));
+  const auto skew = open_source({.spec = "euroc:" + folder.path().string()})->skew();
+  ASSERT_TRUE(skew);
+  EXPECT_EQ(skew->histogram.total(), 1);
+  EXPECT_NEAR(skew->histogram.largest_ms, 0.0003, 1e-9);
 }
 
 }  // namespace
