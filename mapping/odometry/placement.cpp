@@ -7,6 +7,9 @@ namespace flogmap {
 namespace {
 
 constexpr int kMaxRounds = 3;  // of finding landmarks and solving for the pose again
+constexpr double kNearestZ_m = 0.05;
+constexpr double kBehind_px = 1000;     // as far as a landmark behind the camera counts
+constexpr std::int64_t kLastPose = -1;  // a hypothesis of no key frame
 
 class Placing {
  public:
@@ -14,22 +17,25 @@ class Placing {
           const FrameFeatures& features, const PlacementOptions& options)
       : camera_(camera), map_(map), frame_(frame), features_(features), options_(options) {}
 
-  /// Each returns true once a convincing placement is found.
+  /// True once a convincing placement is found.
   bool try_key_frame(const KeyFrame& key, PatchFrame patches) {
     const auto match = match_frames(camera_, key.matchable(), {frame_.left, features_}, patches,
                                     options_.matching, options_.consistency);
-    return match && try_pose(key.odometry_from_camera * match->current_from_key.inverse());
+    return match && try_pose(key.odometry_from_camera * match->current_from_key.inverse(), key.id);
   }
 
-  bool try_pose(SE3 odometry_from_camera) {
+  /// `source` tells hypotheses apart that are independent of one another: the key frame's id.
+  bool try_pose(SE3 odometry_from_camera, std::int64_t source) {
+    if (confirmed_by(odometry_from_camera, source)) return true;
     int last_inliers = 0;
     for (int round = 0; round < kMaxRounds; ++round) {
       auto placement = test(odometry_from_camera);
       if (!placement) return false;
       odometry_from_camera = placement->odometry_from_camera;
+      const bool confirmed = confirmed_by(odometry_from_camera, source);
       const int num_inliers = placement->num_inliers;
-      if (num_inliers > best_.num_inliers) best_ = *std::move(placement);
-      if (convincing()) return true;
+      keep_if_better(*std::move(placement), source);
+      if (confirmed || convincing()) return true;
       if (num_inliers <= last_inliers) return false;
       last_inliers = num_inliers;
     }
@@ -52,6 +58,32 @@ class Placing {
   [[nodiscard]] bool convincing() const {
     return best_.num_inliers >= options_.many_inliers ||
            (best_.num_inliers >= options_.convincing_inliers && best_.share() >= options_.convincing_share);
+  }
+
+  /// Two key frames that ask for the same pose are right: what moved by itself between them would ask for
+  /// two.
+  [[nodiscard]] bool confirmed_by(const SE3& odometry_from_camera, std::int64_t source) const {
+    return source != best_source_ && best_.num_inliers >= options_.convincing_inliers &&
+           distance_px(odometry_from_camera, best_) <= options_.search_radius_px;
+  }
+
+  void keep_if_better(Placement placement, std::int64_t source) {
+    if (placement.num_inliers <= best_.num_inliers) return;
+    best_ = std::move(placement);
+    best_source_ = source;
+  }
+
+  /// How far from where they are seen a pose puts a placement's inliers, on average.
+  [[nodiscard]] double distance_px(const SE3& odometry_from_camera, const Placement& placement) const {
+    const SE3 camera_from_odometry = odometry_from_camera.inverse();
+    double sum_px = 0;
+    for (std::size_t i = 0; i < placement.sightings.size(); ++i) {
+      if (!placement.inlier[i]) continue;
+      const Sighting& s = placement.sightings[i];
+      const Eigen::Vector3d p = camera_from_odometry * map_.landmark(s.landmark).in_odometry;
+      sum_px += p.z() > kNearestZ_m ? (project(camera_, p) - s.pixel).norm() : kBehind_px;
+    }
+    return sum_px / std::max(placement.num_inliers, 1);
   }
 
   /// Landmarks near a hypothesis, and the pose that they ask for.
@@ -78,6 +110,7 @@ class Placing {
   const FrameFeatures& features_;
   const PlacementOptions& options_;
   Placement best_;
+  std::int64_t best_source_ = kLastPose;
 };
 
 }  // namespace
@@ -88,12 +121,13 @@ PlacementResult place(const StereoCamera& camera, const LocalMap& map, const Rec
   Placing placing(camera, map, frame, features, options);
   const auto& key_frames = map.key_frames();
   const int n = std::min(num_key_frames, static_cast<int>(key_frames.size()));
-  for (int i = 0; i < n; ++i) {
-    const KeyFrame& key = key_frames[key_frames.size() - 1 - i];
-    if (placing.try_key_frame(key, PatchFrame::upright)) return std::move(placing).result();
-    if (placing.try_key_frame(key, PatchFrame::own_orientation)) return std::move(placing).result();
+  for (const PatchFrame patches : {PatchFrame::upright, PatchFrame::own_orientation}) {
+    for (int i = 0; i < n; ++i) {
+      const KeyFrame& key = key_frames[key_frames.size() - 1 - i];
+      if (placing.try_key_frame(key, patches)) return std::move(placing).result();
+    }
   }
-  placing.try_pose(last_odometry_from_camera);
+  placing.try_pose(last_odometry_from_camera, kLastPose);
   return std::move(placing).result();
 }
 

@@ -53,7 +53,7 @@ struct PlacementResult {
 };
 
 /// Tries the newest `num_key_frames` key frames, first upright, then turned, then the last known pose, until
-/// one convinces; else the one with most inliers, if they are enough.
+/// one convinces or two key frames say the same; else the one with most inliers, if they are enough.
 [[nodiscard]] PlacementResult place(const StereoCamera& camera, const LocalMap& map,
                                     const RectifiedFrame& frame, const FrameFeatures& features,
                                     const SE3& last_odometry_from_camera, int num_key_frames,
