@@ -113,14 +113,14 @@ std::optional<LoopCloser::Meeting> LoopCloser::meet(int earlier_view) const {
       match_points(camera_, now.points, earlier.points,
                    match_mutually(now.patches, earlier.patches, options_.matching.max_difference),
                    options_.matching.min_consistent, options_.consistency);
-  if (!match) return std::nullopt;
+  if (!match.current_from_key) return std::nullopt;
   std::vector<MotionPoint> points;
-  for (const IndexPair& pair : match->pairs) {
+  for (const IndexPair& pair : match.pairs) {
     const Eigen::Vector3d& p = now.points[pair.key];
     points.push_back({p, point_covariance(camera_, p, options_.motion.image_sigma_px),
                       project(camera_, earlier.points[pair.current])});
   }
-  const auto motion = refine_motion(camera_, points, match->current_from_key, options_.motion);
+  const auto motion = refine_motion(camera_, points, *match.current_from_key, options_.motion);
   if (!motion || motion->num_inliers < options_.min_inliers) return std::nullopt;
   return Meeting{static_cast<int>(views_.size()) - 1, earlier_view, motion->current_from_key,
                  motion->covariance, motion->num_inliers};

@@ -110,6 +110,10 @@ std::vector<Descriptor> describe(const Image<std::uint8_t>& image, const std::ve
   return descriptors;
 }
 
+double mean_difference(const Descriptor& a, const Descriptor& b) {
+  return difference(a, b) / (64.0 * kGreyPerSigma);
+}
+
 std::vector<IndexPair> match_mutually(const std::vector<Descriptor>& key,
                                       const std::vector<Descriptor>& current, double max_difference) {
   std::vector<Best> of_key(key.size()), of_current(current.size());

@@ -45,6 +45,9 @@ enum class PatchFrame {
                                                const std::vector<Corner>& corners, PatchFrame frame,
                                                const std::vector<float>& scales = {});
 
+/// Mean difference of a sample, in standard deviations of the patch.
+[[nodiscard]] double mean_difference(const Descriptor& a, const Descriptor& b);
+
 /// A corner of the key frame and one of the current frame that may be the same point.
 struct IndexPair {
   int key = 0;
@@ -53,7 +56,7 @@ struct IndexPair {
 };
 
 /// Pairs that choose each other as the most alike, anywhere in the picture. `max_difference` is the largest
-/// mean difference of a sample, in standard deviations of the patch. Ordered by the key's index.
+/// mean_difference(). Ordered by the key's index.
 [[nodiscard]] std::vector<IndexPair> match_mutually(const std::vector<Descriptor>& key,
                                                     const std::vector<Descriptor>& current,
                                                     double max_difference);

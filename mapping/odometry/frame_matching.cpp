@@ -31,15 +31,15 @@ SE3 refined(const StereoCamera& camera, const std::vector<PointPair>& pairs, con
 
 }  // namespace
 
-std::optional<FrameMatch> match_points(const StereoCamera& camera, const std::vector<Eigen::Vector3d>& key,
-                                       const std::vector<Eigen::Vector3d>& current,
-                                       std::vector<IndexPair> pairs, int min_consistent,
-                                       const ConsistencyOptions& consistency) {
+FrameMatch match_points(const StereoCamera& camera, const std::vector<Eigen::Vector3d>& key,
+                        const std::vector<Eigen::Vector3d>& current, std::vector<IndexPair> pairs,
+                        int min_consistent, const ConsistencyOptions& consistency) {
   std::vector<PointPair> points;
   for (const IndexPair& pair : pairs) points.push_back({key[pair.key], current[pair.current]});
   FrameMatch match;
   match.consistent = largest_consistent_set(camera, points, consistency);
-  if (static_cast<int>(match.consistent.size()) < min_consistent) return std::nullopt;
+  match.pairs = std::move(pairs);
+  if (static_cast<int>(match.consistent.size()) < min_consistent) return match;
   std::vector<PointPair> chosen;
   std::vector<double> weights;  // 1 / trace of the covariances
   for (const int i : match.consistent) {
@@ -48,18 +48,15 @@ std::optional<FrameMatch> match_points(const StereoCamera& camera, const std::ve
                            point_covariance(camera, points[i].in_current).trace()));
   }
   const auto start = align_points(chosen, weights);
-  if (!start) return std::nullopt;
-  match.current_from_key = refined(camera, chosen, *start, consistency.image_sigma_px);
-  match.pairs = std::move(pairs);
+  if (start) match.current_from_key = refined(camera, chosen, *start, consistency.image_sigma_px);
   return match;
 }
 
-std::optional<FrameMatch> match_frames(const StereoCamera& camera, const MatchableFrame& key,
-                                       const MatchableFrame& current, PatchFrame patches,
-                                       const MatchingOptions& matching,
-                                       const ConsistencyOptions& consistency) {
+FrameMatch match_frames(const StereoCamera& camera, const MatchableFrame& key, const MatchableFrame& current,
+                        PatchFrame patches, const MatchingOptions& matching,
+                        const ConsistencyOptions& consistency) {
   const FrameFeatures &from = key.features, &to = current.features;
-  if (from.corners.empty() || to.corners.empty()) return std::nullopt;
+  if (from.corners.empty() || to.corners.empty()) return {};
   if (patches == PatchFrame::upright) {
     return match_points(camera, from.points, to.points,
                         match_mutually(from.upright, to.upright, matching.max_difference),

@@ -23,25 +23,22 @@ struct MatchableFrame {
 };
 
 struct FrameMatch {
-  SE3 current_from_key = SE3::Identity();  // closed form: good to a pixel or so
+  std::optional<SE3> current_from_key;  // good to a pixel or so; nothing if too few agree or on a line
   std::vector<IndexPair> pairs;
   std::vector<int> consistent;  // indices of pairs
 };
 
 /// The motion that the largest consistent set of these pairs asks for. `key` and `current`: points in their
-/// camera's frame, metres. Nothing if the set is smaller than `min_consistent` or on a line.
-[[nodiscard]] std::optional<FrameMatch> match_points(const StereoCamera& camera,
-                                                     const std::vector<Eigen::Vector3d>& key,
-                                                     const std::vector<Eigen::Vector3d>& current,
-                                                     std::vector<IndexPair> pairs, int min_consistent,
-                                                     const ConsistencyOptions& consistency);
+/// camera's frame, metres. No motion if the set is smaller than `min_consistent` or on a line.
+[[nodiscard]] FrameMatch match_points(const StereoCamera& camera, const std::vector<Eigen::Vector3d>& key,
+                                      const std::vector<Eigen::Vector3d>& current,
+                                      std::vector<IndexPair> pairs, int min_consistent,
+                                      const ConsistencyOptions& consistency);
 
 /// Matches patches either upright, under the rotation constraint of `consistency`, or in their own
-/// orientation and enlarged by their nearness, under any rotation. Nothing if the consistent set is too small
-/// or on a line.
-[[nodiscard]] std::optional<FrameMatch> match_frames(const StereoCamera& camera, const MatchableFrame& key,
-                                                     const MatchableFrame& current, PatchFrame patches,
-                                                     const MatchingOptions& matching,
-                                                     const ConsistencyOptions& consistency);
+/// orientation and enlarged by their nearness, under any rotation.
+[[nodiscard]] FrameMatch match_frames(const StereoCamera& camera, const MatchableFrame& key,
+                                      const MatchableFrame& current, PatchFrame patches,
+                                      const MatchingOptions& matching, const ConsistencyOptions& consistency);
 
 }  // namespace flogmap

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "mapping/odometry/lost_reasons.hpp"
+
 namespace flogmap {
 namespace {
 
-constexpr int kMaxRounds = 3;  // of finding landmarks and solving for the pose again
+constexpr int kMaxRounds = 3;       // of finding landmarks and solving for the pose again
+constexpr double kJustAlike = 0.3;  // mean difference of two patches of the same thing, see there
 constexpr double kNearestZ_m = 0.05;
 constexpr double kBehind_px = 1000;     // as far as a landmark behind the camera counts
 constexpr std::int64_t kLastPose = -1;  // a hypothesis of no key frame
@@ -21,7 +24,9 @@ class Placing {
   bool try_key_frame(const KeyFrame& key, PatchFrame patches) {
     const auto match = match_frames(camera_, key.matchable(), {frame_.left, features_}, patches,
                                     options_.matching, options_.consistency);
-    return match && try_pose(key.odometry_from_camera * match->current_from_key.inverse(), key.id);
+    note(match, patches, key);
+    return match.current_from_key &&
+           try_pose(key.odometry_from_camera * match.current_from_key->inverse(), key.id);
   }
 
   /// `source` tells hypotheses apart that are independent of one another: the key frame's id.
@@ -47,11 +52,12 @@ class Placing {
     const bool certain =
         best_.sigma_m() <= options_.max_sigma_m && best_.sigma_rad() <= options_.max_sigma_rad;
     if (many && certain) return {std::move(best_), ""};
-    if (many)
-      return {std::nullopt, "the landmarks found again do not fix the pose: far away, bunched or in a line"};
-    if (best_.num_inliers == 0) return {std::nullopt, "too few corners agree on a motion"};
-    return {std::nullopt, "too few landmarks found again (" + std::to_string(best_.num_inliers) + " of " +
-                              std::to_string(options_.min_inliers) + " needed)"};
+    if (many) return {std::nullopt, kFixedBadly};
+    if (seen_.most_agreeing >= options_.matching.min_consistent && best_.num_inliers > 0) {
+      return {std::nullopt,
+              counted("too few landmarks found again", best_.num_inliers, options_.min_inliers)};
+    }
+    return {std::nullopt, why_no_motion(seen_, options_.matching.min_consistent)};
   }
 
  private:
@@ -65,6 +71,17 @@ class Placing {
   [[nodiscard]] bool confirmed_by(const SE3& odometry_from_camera, std::int64_t source) const {
     return source != best_source_ && best_.num_inliers >= options_.convincing_inliers &&
            distance_px(odometry_from_camera, best_) <= options_.search_radius_px;
+  }
+
+  /// For the reason, should there be no pose.
+  void note(const FrameMatch& match, PatchFrame patches, const KeyFrame& key) {
+    seen_.most_agreeing = std::max(seen_.most_agreeing, static_cast<int>(match.consistent.size()));
+    if (patches != PatchFrame::upright || match.current_from_key) return;
+    const auto just_alike = [&](const IndexPair& pair) {
+      return mean_difference(key.features.upright[pair.key], features_.upright[pair.current]) < kJustAlike;
+    };
+    const auto count = std::count_if(match.pairs.begin(), match.pairs.end(), just_alike);
+    seen_.most_alike = std::max(seen_.most_alike, static_cast<int>(count));
   }
 
   void keep_if_better(Placement placement, std::int64_t source) {
@@ -111,6 +128,7 @@ class Placing {
   const PlacementOptions& options_;
   Placement best_;
   std::int64_t best_source_ = kLastPose;
+  SeenAgain seen_;
 };
 
 }  // namespace

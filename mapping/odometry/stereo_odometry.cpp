@@ -1,11 +1,11 @@
 #include "mapping/odometry/stereo_odometry.hpp"
 
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include "mapping/odometry/local_map.hpp"
+#include "mapping/odometry/lost_reasons.hpp"
 
 namespace flogmap {
 namespace {
@@ -25,24 +25,13 @@ void check(const OdometryOptions& options, const StereoCamera& camera) {
           "key_frame_overlap must lie between 0 and 1, got " + std::to_string(options.key_frame_overlap));
 }
 
-std::string counted(const std::string& what, int count, int needed) {
-  return what + " (" + std::to_string(count) + " of " + std::to_string(needed) + " needed)";
-}
-
 /// What is known of the current frame before it has a pose.
 struct Current {
   const RectifiedFrame& frame;
   FrameFeatures features;
 };
 
-double mean_grey(const Image<std::uint8_t>& image) {
-  const auto sum = std::accumulate(image.pixels.begin(), image.pixels.end(), std::int64_t{0});
-  return image.empty() ? 0 : static_cast<double>(sum) / static_cast<double>(image.size());
-}
-
-constexpr double kDarkGrey = 20;
-constexpr int kMinForSwapHint = 100;  // corners without a disparity
-constexpr int kKeyFramesToTry = 3;    // while not lost
+constexpr int kKeyFramesToTry = 3;  // while not lost
 
 }  // namespace
 
@@ -73,7 +62,9 @@ class StereoOdometry::Tracker {
     Tracking tracking;
     for (const Corner& corner : current.features.corners) tracking.corners_px.push_back(corner.px);
     if (static_cast<int>(current.features.corners.size()) < options_.min_corners) {
-      return without_pose(std::move(tracking), too_few_corners(current));
+      return without_pose(std::move(tracking),
+                          why_too_few_corners(frame.left, current.features, options_.min_corners,
+                                              !map_.key_frames().empty()));
     }
     if (map_.key_frames().empty()) return start(std::move(tracking), current, "");
     const int num_key_frames = num_lost_ == 0 ? kKeyFramesToTry : options_.max_key_frames;
@@ -82,18 +73,6 @@ class StereoOdometry::Tracker {
     if (placement) return with_pose(std::move(tracking), current, *placement);
     if (++num_lost_ <= options_.max_lost_frames) return without_pose(std::move(tracking), std::move(reason));
     return start_segment(std::move(tracking), current, reason);
-  }
-
-  [[nodiscard]] std::string too_few_corners(const Current& current) const {
-    const int num_corners = static_cast<int>(current.features.corners.size());
-    if (mean_grey(current.frame.left) < kDarkGrey) {
-      return counted("too dark: too few corners", num_corners, options_.min_corners);
-    }
-    if (current.features.num_without_disparity >= kMinForSwapHint) {
-      return counted("too few corners with a disparity, are left and right swapped?", num_corners,
-                     options_.min_corners);
-    }
-    return counted("too few corners", num_corners, options_.min_corners);
   }
 
   Tracking without_pose(Tracking tracking, std::string reason) const {
@@ -126,7 +105,7 @@ class StereoOdometry::Tracker {
       return counted("few landmarks found again", placed.num_inliers, options_.weak_inliers);
     }
     const bool certain = placed.sigma_m() <= options_.weak_sigma_m;
-    return certain ? "" : "the landmarks fix the position badly: far away, bunched or in a line";
+    return certain ? "" : kFixedBadly;
   }
 
   Tracking with_pose(Tracking tracking, Current& current, const Placement& placed) {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "textured_room.hpp"
+#include "walking.hpp"
 
 namespace flogmap {
 namespace {
@@ -16,30 +16,6 @@ using namespace test;
 using testing::HasSubstr;
 
 constexpr double kPi = std::numbers::pi;
-
-Tracking track(StereoOdometry& odometry, const RenderedFrame& frame) {
-  return odometry.track(frame.pair, frame.disparity);
-}
-
-/// A walk along an arc, as by hand: turns, nods and rolls.
-SE3 hand_held(double s) {
-  return camera_at({-1.5 + 0.8 * s, 0.3 * std::sin(2 * s), 1.3 + 0.05 * std::sin(5 * s)}, 0.4 * s,
-                   0.1 * std::sin(3 * s), 0.15 * std::sin(4 * s));
-}
-
-RenderedFrame dark_frame() {
-  RenderedFrame frame;
-  frame.pair.left = frame.pair.right = Image<std::uint8_t>(kRoomCamera.width_px, kRoomCamera.height_px, 4);
-  frame.disparity.px =
-      Image<float>(kRoomCamera.width_px, kRoomCamera.height_px, std::numeric_limits<float>::quiet_NaN());
-  return frame;
-}
-
-/// Error of the tracked pose, metres and degrees.
-std::pair<double, double> error_of(const Tracking& tracking, const SE3& first, const SE3& now) {
-  const SE3 error = (first.inverse() * now).inverse() * tracking.odometry_from_camera;
-  return {error.translation().norm(), angle_deg(error)};
-}
 
 TEST(StereoOdometry, FirstFrameIsTheOrigin) {
   StereoOdometry odometry({}, kRoomCamera);
@@ -119,7 +95,7 @@ TEST(StereoOdometry, CoveredLensIsLostAtOnceAndFoundAgainWhereItIs) {
   StereoOdometry odometry({}, kRoomCamera);
   for (int i = 0; i < 5; ++i) (void)track(odometry, room.render(hand_held(0.1 * i)));
   for (int i = 0; i < 20; ++i) {
-    const Tracking dark = track(odometry, dark_frame());
+    const Tracking dark = track(odometry, plain_frame(4));
     ASSERT_EQ(dark.state, TrackingState::lost);
     EXPECT_THAT(dark.reason, HasSubstr("dark"));
   }
@@ -179,19 +155,6 @@ TEST(StereoOdometry, FarPointsOnlyGiveNoPoseThatIsWrong) {
     if (tracking.state != TrackingState::ok) continue;
     EXPECT_LT(error_of(tracking, pose(0), pose(i)).first, 0.15) << i;
   }
-}
-
-/// Only what `keep` says is textured; the rest of the picture is plain.
-template <typename Keep>
-RenderedFrame masked(RenderedFrame frame, Keep keep) {
-  for (int y = 0; y < frame.pair.left.height; ++y) {
-    for (int x = 0; x < frame.pair.left.width; ++x) {
-      if (keep(x, y)) continue;
-      frame.pair.left.at(x, y) = frame.pair.right.at(x, y) = 120;
-      frame.disparity.px.at(x, y) = std::numeric_limits<float>::quiet_NaN();
-    }
-  }
-  return frame;
 }
 
 TEST(StereoOdometry, AFewBunchedPointsGiveNoPose) {
