@@ -32,13 +32,19 @@ std::string counted(const std::string& what, int count, int needed) {
   return what + " (" + std::to_string(count) + " of " + std::to_string(needed) + " needed)";
 }
 
+bool hardly_any_disparity(const FrameFeatures& features) {
+  return features.num_without_disparity >= kMinForSwapHint &&
+         2 * static_cast<int>(features.corners.size()) < features.num_without_disparity;
+}
+
 std::string why_too_few_corners(const Image<std::uint8_t>& left, const FrameFeatures& features, int needed,
                                 bool has_been_better) {
   const int num_corners = static_cast<int>(features.corners.size());
   const Grey grey = grey_of(left);
   if (grey.mean < kDarkGrey) return counted("too dark: too few corners", num_corners, needed);
-  if (features.num_without_disparity >= kMinForSwapHint) {
-    return counted("too few corners with a disparity, are left and right swapped?", num_corners, needed);
+  if (hardly_any_disparity(features)) {
+    return "too few corners with a disparity (" + std::to_string(num_corners) + " of " +
+           std::to_string(num_corners + features.num_without_disparity) + "), are left and right swapped?";
   }
   if (grey.sigma < kOneGrey) {
     return counted("blocked, or a plain surface fills the view: too few corners", num_corners, needed);

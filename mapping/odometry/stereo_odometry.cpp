@@ -61,12 +61,13 @@ class StereoOdometry::Tracker {
     Current current{frame, extract_features(camera_, frame.left, disparity, options_.corners)};
     Tracking tracking;
     for (const Corner& corner : current.features.corners) tracking.corners_px.push_back(corner.px);
-    if (static_cast<int>(current.features.corners.size()) < options_.min_corners) {
+    const bool first = map_.key_frames().empty();
+    if (static_cast<int>(current.features.corners.size()) < options_.min_corners ||
+        (first && hardly_any_disparity(current.features))) {
       return without_pose(std::move(tracking),
-                          why_too_few_corners(frame.left, current.features, options_.min_corners,
-                                              !map_.key_frames().empty()));
+                          why_too_few_corners(frame.left, current.features, options_.min_corners, !first));
     }
-    if (map_.key_frames().empty()) return start(std::move(tracking), current, "");
+    if (first) return start(std::move(tracking), current, "");
     const int num_key_frames = num_lost_ == 0 ? kKeyFramesToTry : options_.max_key_frames;
     auto [placement, reason] =
         place(camera_, map_, frame, current.features, pose_, num_key_frames, options_.placement);
