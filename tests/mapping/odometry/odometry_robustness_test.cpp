@@ -56,6 +56,33 @@ TEST(OdometryRobustness, AGapInTheMiddleIsBridged) {
   }
 }
 
+/// What `front` says in a part of the picture, else what `behind` says.
+RenderedFrame in_front(const RenderedFrame& front, RenderedFrame behind, int left, int right) {
+  for (int y = 0; y < behind.pair.left.height; ++y) {
+    for (int x = left; x < right; ++x) {
+      behind.pair.left.at(x, y) = front.pair.left.at(x, y);
+      behind.pair.right.at(x, y) = front.pair.right.at(x, y);
+      behind.disparity.px.at(x, y) = front.disparity.px.at(x, y);
+    }
+  }
+  return behind;
+}
+
+TEST(OdometryRobustness, ALargeThingThatMovesByItselfDoesNotCarryTheCameraAlong) {
+  const TexturedRoom room{.half_m = {1.6, 1.4, 0}, .height_m = 2.2}, lorry{.seed = 7};
+  StereoOdometry odometry({}, kRoomCamera);
+  const auto walking = [](int i) {
+    return camera_at({-0.9 + 0.04 * i, 0.02 * i, 1.2}, 0.3 + 0.03 * i, -0.2);
+  };
+  const auto passing = [](int i) { return camera_at({1.2, -0.3 + 0.12 * i, 1.3}, 0); };
+  for (int i = 0; i < 8; ++i) {  // a third of the picture passes by at a speed of its own
+    const Tracking tracking =
+        track(odometry, in_front(lorry.render(passing(i)), room.render(walking(i)), 180, 276));
+    ASSERT_TRUE(tracking.has_pose()) << i << ": " << tracking.reason;
+    EXPECT_LT(error_of(tracking, walking(0), walking(i)).first, 0.005) << i;
+  }
+}
+
 TEST(OdometryRobustness, ALineOfPointsGivesNoPoseThatIsWrong) {
   const TexturedRoom room;
   const auto on_a_line = [](int, int y) { return std::abs(y - 120) < 6; };
