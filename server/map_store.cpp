@@ -36,6 +36,7 @@ struct MapStore::State {
     committed = read_seal(database);
     ended_cleanly = committed.clean;
     tables.resume(committed, grid.num_layers());
+    if (!ended_cleanly) return;  // it says so already; after a kill there may be no room to say it again
     tables.set_clean(false);
     commit();
   }

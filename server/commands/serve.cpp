@@ -1,5 +1,7 @@
 // flogmap serve: maps and serves until SIGINT or SIGTERM; without a source, serves a stored map.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -117,11 +119,14 @@ int serve_stored(const Options& options, const HubInfo& info) {
   return 0;
 }
 
-/// After a kill, viewers may have seen up to a second more than was stored. A revision far above all that
-/// they can know makes them take every tile anew.
+/// After a kill, viewers may have seen more than was stored: a second, or, where the disk was full, all since
+/// the start. A revision far above all that they can know makes them take every tile anew. The clock's
+/// milliseconds are above those of any earlier start, stored or not.
 void outrank_what_viewers_know(StoredMap& map) {
   constexpr std::uint64_t kFarAbove = 1'000'000;
-  map.revision += kFarAbove;
+  const auto now_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::system_clock::now().time_since_epoch());
+  map.revision = std::max(map.revision + kFarAbove, static_cast<std::uint64_t>(now_ms.count()));
   for (TileUpdate& update : map.tiles) {
     update.tile = std::make_shared<const Tile>(Tile{update.tile->cells, map.revision});
     update.revision = map.revision;

@@ -91,7 +91,8 @@ TEST_F(Attack, EveryMalformedFrameGetsItsCode) {
        4003},
       {"acknowledges too much", [&] { return hello + frame(0x82, ack_frame(1U << 30U)); }, 4003},
       {"a flipped Subscribe",
-       [&] { return hello + frame(0x82, flipped_subscribe(random_)) + frame(0x88, "\x03\xe8"); }, AnyOf(4003, 1000)},
+       [&] { return hello + frame(0x82, flipped_subscribe(random_)) + frame(0x88, "\x03\xe8"); },
+       AnyOf(4003, 1000)},
   };
   for (const FrameClass& one : classes) {
     for (int i = 0; i < kFramesOfEach; ++i) {

@@ -125,6 +125,56 @@ TEST(ProgramStore, AFullDiskIsSaidInWordsAndMappingGoesOn) {
   EXPECT_GE(load_map(store).revision, last);
 }
 
+/// What this process and those that it starts may write into a file, until the end of the scope.
+class FileLimit {
+ public:
+  explicit FileLimit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  FileLimit(const FileLimit&) = delete;
+  FileLimit& operator=(const FileLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+/// Maps until the journal holds more than `bytes`, and is killed.
+void leave_a_journal(const std::filesystem::path& store, const std::filesystem::path& folder,
+                     std::uintmax_t bytes) {
+  RunningProgram program(mapping_into(store, folder));
+  EXPECT_TRUE(wait_until([&] {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(store.string() + "-wal", error);
+    return !error && size > bytes && revision_of(program) > 0;
+  }));
+  program.end(SIGKILL);
+}
+
+TEST(ProgramStore, ADiskThatIsFullRightAfterAKillKeepsNobodyFromMapping) {
+  const TemporaryFolder folder = TemporaryFolder::in_memory();
+  const auto store = folder / "map.flog";
+  std::signal(SIGXFSZ, SIG_IGN);
+  leave_a_journal(store, folder.path(), 200'000);
+  const std::vector<std::string> arguments = mapping_into(store, folder.path());
+  std::unique_ptr<RunningProgram> program;
+  {
+    const FileLimit no_room(40'000);  // of the journal's index alone there is enough
+    program = std::make_unique<RunningProgram>(arguments);
+  }
+  ASSERT_TRUE(wait_until([&] { return !warning_of(*program, store).empty(); }));
+  EXPECT_THAT(warning_of(*program, store), HasSubstr("mapping goes on"));
+  const std::uint64_t then = revision_of(*program);
+  EXPECT_TRUE(wait_until([&] { return revision_of(*program) > then; }));
+  limit_files_of(*program, RLIM_INFINITY);
+  EXPECT_TRUE(wait_until([&] { return warning_of(*program, store).empty(); }));
+  const std::uint64_t last = revision_of(*program);
+  EXPECT_EQ(program->end(SIGTERM), 0);
+  EXPECT_GE(load_map(store).revision, last);
+}
+
 TEST(ProgramStore, AStoreThatCannotBeWrittenIsRefusedAtTheStart) {
   const TemporaryFolder folder;
   try {
