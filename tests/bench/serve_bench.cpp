@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "server/hub.hpp"
+#include "tests/bench/affinity.hpp"
 #include "tests/bench/serve_fetch.hpp"
 #include "tests/bench/serve_load.hpp"
 #include "tests/bench/serve_snapshot.hpp"
@@ -86,6 +87,7 @@ int load(const std::vector<std::string>& arguments) {
   const std::string& what = arguments.at(0);
   const auto port = static_cast<std::uint16_t>(std::stoi(arguments.at(1)));
   json result;
+  if (what == "watch" || what == "stall") keep_to_core(0, kNetworkCore);
   if (what == "watch") result = watch(port, std::stoi(arguments.at(2)), 2 * kPhase);
   if (what == "stall") result = stall(port, std::stoi(arguments.at(2)), kPhase);
   if (what == "again") result = fetch(port, {.target = arguments.at(2), .conditional = true}, kPhase);
@@ -104,8 +106,10 @@ json result_of(const std::string& load, std::uint16_t port, const std::string& m
   return LoadProcess(load + " " + std::to_string(port) + " " + more).result();
 }
 
-/// 200 viewers on a map that grows at 20 Hz; then as many that read nothing.
+/// 200 viewers on a map that grows at 20 Hz; then as many that read nothing. The network's thread shares a
+/// core with them, what stands for the mapping has the other.
 json measure_viewers(Hub& hub, SyntheticWalk& walk, int viewers) {
+  keep_to_core(0, kMappingCore);
   const std::string more = std::to_string(hub.port()) + " " + std::to_string(viewers);
   const double alone = map_rate(hub, walk, kPhase);
   const double before_kib = resident_kib();
@@ -123,6 +127,7 @@ json measure_viewers(Hub& hub, SyntheticWalk& walk, int viewers) {
   // again.
   out["stalled_client_kib"] = std::max(0.0, resident_kib() - before_kib) / viewers;
   stalled.result();
+  keep_to_no_core();
   return out;
 }
 
@@ -176,12 +181,28 @@ double frames_per_s(std::uint16_t port, seconds duration) {
   return (frames() - before) / std::chrono::duration<double>(steady_clock::now() - start).count();
 }
 
-/// The real program on the simulated room (752x480 at 20 Hz), alone and with viewers.
+/// The simulated room through two cameras of 752x480 at 20 Hz.
+std::string wide_room(const std::filesystem::path& folder) {
+  std::ifstream room(FLOGMAP_SOURCE_DIR "/camera/simulation/scenes/room.json");
+  json scene = json::parse(room);
+  scene["camera"] = {
+      {"width_px", 752}, {"height_px", 480}, {"focal_px", 435}, {"baseline_m", 0.12}, {"rate_hz", 20}};
+  const std::filesystem::path file = folder / "room-752x480.json";
+  std::ofstream(file) << scene;
+  return "sim:" + file.string();
+}
+
+/// The real program, alone and with viewers: its threads but one on one core, network and viewers on the
+/// other. What a camera would do, the rendering, is on the mapping's core too.
 json measure_mapping(int viewers) {
   const std::string connections = std::to_string(viewers + 32);
-  RunningProgram program({"--source", "sim:room", "--max-connections", connections,
+  const auto folder = std::filesystem::temp_directory_path() / ("serve_bench." + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  RunningProgram program({"--source", wide_room(folder), "--threads", "1", "--max-connections", connections,
                           "--max-connections-per-address", connections});
+  std::filesystem::remove_all(folder);
   std::this_thread::sleep_for(seconds(3));
+  keep_program_to_cores(program.pid());
   const double alone = frames_per_s(program.port(), 2 * kPhase);
   LoadProcess watching("watch " + std::to_string(program.port()) + " " + std::to_string(viewers));
   std::this_thread::sleep_for(kPhase / 4);
@@ -197,7 +218,10 @@ json measure(int viewers) {
   FakeSession session;
   Hub hub(options, session, {});
   SyntheticWalk walk;
-  std::thread network([&] { hub.run(); });
+  std::thread network([&] {
+    keep_to_core(0, kNetworkCore);
+    hub.run();
+  });
   hub.begin(walk.begin("bench00000000001", "started"));
   json out = {{"viewers", viewers}};
   out.update(measure_viewers(hub, walk, viewers));

@@ -44,6 +44,7 @@ flogmap_bench(serve_bench
           running_program.cpp
   LINK bad_network loopback_hub client_frames synthetic_walk hub network_libraries proto nlohmann_json::nlohmann_json)
 if(FLOGMAP_BENCH)
-  target_compile_definitions(serve_bench PRIVATE FLOGMAP_PROGRAM="$<TARGET_FILE:flogmap>")
+  target_compile_definitions(serve_bench PRIVATE FLOGMAP_PROGRAM="$<TARGET_FILE:flogmap>"
+                                                 FLOGMAP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   add_dependencies(serve_bench flogmap)
 endif()
