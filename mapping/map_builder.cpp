@@ -15,7 +15,11 @@ bool place(View& view, const PathCorrection& correction) {
 }  // namespace
 
 MapBuilder::MapBuilder(MapIntegrator map, const MapBuilderOptions& options)
-    : options_(options), map_(std::move(map)), frozen_(map_), views_(options.max_view_bytes) {}
+    : options_(options),
+      map_(std::move(map)),
+      frozen_(map_),
+      frozen_holds_(!map_.snapshot().tiles.empty()),
+      views_(options.max_view_bytes) {}
 
 std::vector<TileUpdate> MapBuilder::add(View& view) {
   round_disparity(view.disparity);
@@ -50,6 +54,7 @@ std::vector<TileUpdate> MapBuilder::catch_up() {
   }
   if (rebuild_->next < views_.size()) return {};
   built_with_ = rebuild_->with;
+  built_level_ = rebuild_->correction.level();
   const Rebuild done = *std::exchange(rebuild_, std::nullopt);
   return map_.replace_by(done.map.snapshot());
 }
@@ -66,6 +71,7 @@ void MapBuilder::freeze_oldest() {
   }
   if (place(oldest, correction_)) {
     frozen_.integrate(oldest);
+    frozen_holds_ = true;
   } else {
     --num_waiting_;  // its place was never found
   }
@@ -74,8 +80,10 @@ void MapBuilder::freeze_oldest() {
 void MapBuilder::reset() {
   map_.reset();
   frozen_.reset();
+  frozen_holds_ = false;
   views_.clear();
   correction_ = {};
+  built_level_ = {};
   built_with_ = corrected_times_;
   num_waiting_ = 0;
   rebuild_.reset();

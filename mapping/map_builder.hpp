@@ -37,6 +37,12 @@ class MapBuilder {
   /// Some view stands elsewhere in the map than the newest correction says.
   [[nodiscard]] bool is_behind() const { return built_with_ != corrected_times_; }
 
+  /// Every view of the map is still kept, so that it can be levelled as a whole.
+  [[nodiscard]] bool is_whole() const { return options_.keep_views && !frozen_holds_; }
+
+  /// How the map is levelled that map() now is.
+  [[nodiscard]] const HandLevel& level() const { return built_level_; }
+
   /// Builds a map aside, one view at a time; the tiles that differ once it is complete and in place.
   std::vector<TileUpdate> catch_up();
 
@@ -63,10 +69,12 @@ class MapBuilder {
   MapBuilderOptions options_;
   MapIntegrator map_;
   MapIntegrator frozen_;  // what the store's views are added to: an earlier map, views no longer kept
+  bool frozen_holds_ = false;
   ViewStore views_;
   PathCorrection correction_;
   std::uint64_t corrected_times_ = 0;
   std::uint64_t built_with_ = 0;
+  HandLevel built_level_;
   std::size_t num_waiting_ = 0;
   std::optional<Rebuild> rebuild_;
 };

@@ -95,8 +95,37 @@ ControlResult CaptureControl::step() {
   return {};
 }
 
+void CaptureControl::begin_level(const HandLevel& level, std::function<std::string()> obstacle) {
+  level_ = level;
+  level_obstacle_ = std::move(obstacle);
+}
+
+LevelState CaptureControl::levelling() const {
+  const std::scoped_lock lock(mutex_);
+  if (state_ != SessionState::running && state_ != SessionState::paused && state_ != SessionState::finished) {
+    return {level_, "there is no running session whose map could be levelled"};
+  }
+  return {level_, level_obstacle_ ? level_obstacle_() : ""};
+}
+
+ControlResult CaptureControl::level(const HandLevel& level) {
+  const std::string obstacle = levelling().obstacle;
+  if (!obstacle.empty()) return illegal(obstacle);
+  const std::scoped_lock lock(mutex_);
+  level_ = level;
+  relevel_ = true;
+  changed_.notify_all();
+  return {};
+}
+
+HandLevel CaptureControl::level_of_next_map() {
+  const std::scoped_lock lock(mutex_);
+  if (source_.live) level_ = {};
+  return level_;
+}
+
 bool CaptureControl::has_work() const {
-  return stop_ || reset_ || seek_s_ || state_ == SessionState::running || steps_ > 0;
+  return stop_ || relevel_ || reset_ || seek_s_ || state_ == SessionState::running || steps_ > 0;
 }
 
 CaptureTurn CaptureControl::await_turn() {
@@ -116,6 +145,7 @@ CaptureTurn CaptureControl::await_turn() {
     if (state_ == SessionState::paused) ++steps_;  // show the frame that was sought
     return {.kind = CaptureTurn::Kind::seek, .position_s = position_s};
   }
+  if (std::exchange(relevel_, false)) return {.kind = CaptureTurn::Kind::level};
   if (state_ == SessionState::paused) --steps_;
   return {};
 }

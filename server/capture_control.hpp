@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -13,7 +14,7 @@ namespace flogmap {
 
 /// What the capture thread does next.
 struct CaptureTurn {
-  enum class Kind : std::uint8_t { read, seek, reset, stop };
+  enum class Kind : std::uint8_t { read, seek, reset, level, stop };
   Kind kind = Kind::read;
   double position_s = 0;  // of a seek
 };
@@ -24,6 +25,9 @@ class CaptureControl final : public SessionControl {
  public:
   /// `rate`: 1 as recorded, 0 as fast as possible. Live sources ignore it.
   CaptureControl(const SourceInfo& source, double rate, bool loop);
+  /// Before anything runs: the level to begin with, and why the map cannot be levelled now, in words, from
+  /// any thread; empty if it can be.
+  void begin_level(const HandLevel& level, std::function<std::string()> obstacle);
 
   // SessionControl, any thread
   [[nodiscard]] SessionState state() const override;
@@ -36,6 +40,8 @@ class CaptureControl final : public SessionControl {
   ControlResult reset() override;
   ControlResult change_playback(const PlaybackChange& change) override;
   ControlResult step() override;
+  [[nodiscard]] LevelState levelling() const override;
+  ControlResult level(const HandLevel& level) override;
 
   // capture thread
   /// Blocks while paused or finished; then says what to do.
@@ -47,6 +53,9 @@ class CaptureControl final : public SessionControl {
   /// Frames before this time are not paced: a seek forwards plays fast instead of leaving a gap in the map.
   void hurry_until(std::int64_t timestamp_ns);
   [[nodiscard]] bool loop() const { return loop_; }
+  /// How the map that begins now is to be levelled: a recording begins as it did before, and is wrong by as
+  /// much again; cameras begin elsewhere.
+  HandLevel level_of_next_map();
 
   // the pipeline
   void started();
@@ -69,6 +78,9 @@ class CaptureControl final : public SessionControl {
   bool reset_ = false;
   std::optional<double> seek_s_;
   int steps_ = 0;
+  HandLevel level_;
+  bool relevel_ = false;
+  std::function<std::string()> level_obstacle_;
   double rate_;
   std::int64_t position_ns_ = 0;
   std::int64_t hurry_until_ns_ = 0;

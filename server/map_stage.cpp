@@ -19,7 +19,8 @@ MapStage::MapStage(MapBuilder builder, PipelineObserver& observer, StageStatisti
       statistics_(statistics),
       batch_(batch),
       ending_(std::move(ending)),
-      items_(kQueue, WhenFull::wait) {}
+      items_(kQueue, WhenFull::wait),
+      whole_(builder_.is_whole()) {}
 
 void MapStage::integrate(View view) {
   Item item;
@@ -66,6 +67,7 @@ void MapStage::take_in(Item& item) {
     take_in(*item.view);
   }
   num_waiting_ = builder_.num_waiting();
+  whole_ = builder_.is_whole();
 }
 
 void MapStage::take_in(View& view) {
@@ -81,12 +83,22 @@ void MapStage::begin_now(MapBegin& map) {
   if (std::exchange(begun_, true)) builder_.reset();
   map.info = builder_.map().info();
   map.revision = builder_.map().revision();
+  told_level_ = map.level;
   observer_.map_begins(map);
 }
 
 void MapStage::catch_up() {
   const std::vector<TileUpdate> updates = builder_.catch_up();
   if (!updates.empty()) observer_.map_changed(builder_.map().revision(), updates);
+  if (builder_.is_behind() || builder_.level() == told_level_) return;
+  told_level_ = builder_.level();
+  observer_.map_levelled(told_level_);
+}
+
+std::string MapStage::why_not_levelled() const {
+  if (whole_) return {};
+  return "parts of this map were seen before the last start, or so long ago that their views are no longer "
+         "kept; reset the map, then level it";
 }
 
 }  // namespace flogmap

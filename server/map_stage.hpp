@@ -7,6 +7,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "mapping/map_builder.hpp"
 #include "server/bounded_queue.hpp"
@@ -40,6 +41,9 @@ class MapStage {
   /// Views that wait for this stage. From any thread.
   [[nodiscard]] std::size_t num_queued() const { return items_.size(); }
 
+  /// Why the map cannot be levelled, in words; empty if it can be. From any thread.
+  [[nodiscard]] std::string why_not_levelled() const;
+
   [[nodiscard]] const MapIntegrator& map() const { return builder_.map(); }
 
  private:
@@ -64,6 +68,8 @@ class MapStage {
   bool begun_ = false;
   BoundedQueue<Item> items_;
   std::atomic<std::uint64_t> num_waiting_ = 0;
+  std::atomic<bool> whole_;
+  HandLevel told_level_;
 };
 
 }  // namespace flogmap

@@ -129,6 +129,8 @@ void MapStore::rewrite_trajectory(std::span<const TrajectoryEntry> entries) {
   state_->writable().rewrite_trajectory(entries);
 }
 
+void MapStore::put_level(const HandLevel& level) { state_->writable().put_level(level); }
+
 void MapStore::put_view(const StoredView& view) { state_->writable().put_view(view); }
 
 std::optional<StoredView> MapStore::view(std::int64_t number) const {

@@ -27,6 +27,7 @@ struct StoredMap {
   std::string options_json = "{}";          // the options it was made with
   std::string calibration_json = "{}";
   std::vector<SharedView> views;  // in order of number
+  HandLevel level;                // by hand, since the automatic start
 };
 
 /// The whole map of a file, checked to the last byte before anything is returned; nothing is written to it.
@@ -70,6 +71,8 @@ class MapStore {
   void put_tiles(std::span<const TileUpdate> updates);
   void append_trajectory(std::span<const TrajectoryEntry> entries);
   void rewrite_trajectory(std::span<const TrajectoryEntry> entries);
+
+  void put_level(const HandLevel& level);
 
   /// Adds a view or replaces the one of this number.
   void put_view(const StoredView& view);

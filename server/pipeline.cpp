@@ -28,9 +28,11 @@ Pipeline::Pipeline(const PipelineOptions& options, std::unique_ptr<StereoSource>
       statistics_(options.statistics_window),
       frames_(kFrameQueue, source_->info().live ? WhenFull::drop_oldest : WhenFull::wait),
       map_({std::move(integrator),
-            {.keep_views = options.loop_closure.has_value(), .max_view_bytes = options.max_view_bytes}},
+            {.keep_views = options.loop_closure.has_value() || options.keep_views,
+             .max_view_bytes = options.max_view_bytes}},
            observer, statistics_, options.end_with_source,
            [this] { return control_.state() == SessionState::draining; }) {
+  control_.begin_level(options.continued.level, [this] { return map_.why_not_levelled(); });
   if (options.loop_closure) loops_.emplace(*options.loop_closure, front_end_.camera(), source_->info().live);
 }
 
@@ -76,7 +78,8 @@ void Pipeline::capture() {
     frames_.push({.generation = generation_, .frame = {}, .trouble = true, .at = Clock::now()});
   });
   const std::string epoch = options_.continued.epoch;
-  generation_ = {1, epoch.empty() ? random_epoch() : epoch, epoch.empty() ? "started" : "continued"};
+  generation_ = {1, epoch.empty() ? random_epoch() : epoch, epoch.empty() ? "started" : "continued",
+                 options_.continued.level};
   frames_.push({.generation = generation_, .frame = {}, .at = Clock::now()});
   control_.started();
   for (bool more = true; more;) {
@@ -90,6 +93,12 @@ void Pipeline::capture() {
         break;
       case CaptureTurn::Kind::seek:
         go_to(turn.position_s);
+        break;
+      case CaptureTurn::Kind::level:
+        frames_.push({.generation = generation_,
+                      .frame = {},
+                      .level = control_.levelling().level,
+                      .at = Clock::now()});
         break;
       case CaptureTurn::Kind::read:
         if (!read_frame()) {
@@ -141,7 +150,7 @@ void Pipeline::restart(const std::string& reason, double position_s) {
     source_->seek(info.first_timestamp_ns + static_cast<std::int64_t>(position_s * 1e9));
   }
   frames_read_ = 0;
-  generation_ = {generation_.number + 1, random_epoch(), reason};
+  generation_ = {generation_.number + 1, random_epoch(), reason, control_.level_of_next_map()};
   frames_.push({.generation = generation_, .frame = {}, .at = Clock::now()});
 }
 
@@ -167,6 +176,7 @@ void Pipeline::see() {
       report_status();  // nothing may follow, and the last counts must not stay behind
     }
     if (captured->trouble) report_status();
+    if (captured->level) level_map(*captured->level);
     if (!captured->frame) continue;
     correct_path();
     FrontEndResult result = front_end_.process(*captured->frame);
@@ -204,10 +214,22 @@ void Pipeline::wait_for_loops() {
 void Pipeline::correct_path() {
   std::optional<PathCorrection> correction = loops_ ? loops_->take() : std::nullopt;
   if (!correction) return;
-  path_.correct(*correction);
+  correction_ = correction->levelled(correction_.level());
+  rewrite_path("loop closed");
+}
+
+/// Odometry and loops go on in the world of the automatic start.
+void Pipeline::level_map(const HandLevel& level) {
+  correction_ = correction_.levelled(level);
+  rewrite_path("levelled by hand");
+  report_status();
+}
+
+void Pipeline::rewrite_path(const std::string& reason) {
+  path_.correct(correction_);
   unplaced_frames_ = path_.num_unplaced();
-  observer_.path_rewritten(path_.corrected());
-  map_.correct(*std::move(correction));
+  observer_.path_rewritten(path_.corrected(), reason);
+  map_.correct(correction_);
 }
 
 /// The first generation goes on with the continued map, if there is one.
@@ -230,8 +252,12 @@ void Pipeline::begin_generation(const Generation& generation) {
     counters_.lost += unplaced_frames_.exchange(0);
   }
   path_ = CorrectedPath(begin.trajectory);
+  correction_ = PathCorrection().levelled(generation.level);
+  path_.correct(correction_);
   if (loops_) loops_->begin_map();
+  begin.level = generation.level;
   map_.begin(std::move(begin));
+  if (!generation.level.is_level()) map_.correct(correction_);
 }
 
 /// Where the frame stands in the map; lost for those who look on while that is unknown.
@@ -277,6 +303,7 @@ void Pipeline::report_status() {
   status_at_ = now;
   frames_at_status_ = report.frames;
   report.alignment = front_end_.alignment();
+  if (!correction_.level().is_level()) report.alignment += ", then levelled by hand";
   observer_.status_changed(report);
 }
 

@@ -51,12 +51,14 @@ class Pipeline {
     std::uint64_t number = 0;
     std::string epoch;
     std::string reason;
+    HandLevel level;
   };
   struct Captured {
     Generation generation;
-    std::optional<StereoFrame> frame;  // nothing: the generation is new, or ...
-    bool ended = false;                // ... the source has ended, or ...
-    bool trouble = false;              // ... it waits for a camera, or does so no longer
+    std::optional<StereoFrame> frame;               // nothing: the generation is new, or ...
+    bool ended = false;                             // ... the source has ended, or ...
+    bool trouble = false;                           // ... it waits for a camera, or does so no longer, or ...
+    std::optional<HandLevel> level = std::nullopt;  // ... the map is to be levelled so
     std::chrono::steady_clock::time_point at;
   };
   void capture();
@@ -72,6 +74,8 @@ class Pipeline {
   void report(const Captured& captured, FrontEndResult& result);
   void wait_for_loops();
   void correct_path();
+  void level_map(const HandLevel& level);
+  void rewrite_path(const std::string& reason);
   void report_status();
   template <typename Stage>
   void run_stage(Stage stage);
@@ -91,6 +95,7 @@ class Pipeline {
   std::int64_t frames_read_ = 0;       // of this generation
   std::uint64_t seen_generation_ = 0;  // vision thread, as is ...
   CorrectedPath path_;
+  PathCorrection correction_;
   std::chrono::steady_clock::time_point status_at_;
   std::uint64_t frames_at_status_ = 0;
 

@@ -19,6 +19,7 @@ struct ContinuedMap {
   std::vector<TileUpdate> tiles;
   std::vector<TrajectoryEntry> trajectory;
   std::vector<SharedView> views;
+  HandLevel level;  // how a recording was levelled; what cameras see next is levelled already
 };
 
 struct PipelineOptions {
@@ -28,6 +29,7 @@ struct PipelineOptions {
   std::int64_t max_frames = 0;   // the source counts as ended after so many; 0 = never
   std::size_t statistics_window = 256;
   std::optional<LoopOptions> loop_closure;               // nothing: loops stay open
+  bool keep_views = false;                               // even so, to be levelled by hand
   std::size_t max_view_bytes = std::size_t{400} << 20U;  // of views kept to build the map anew
   ContinuedMap continued;
 };

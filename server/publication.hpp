@@ -11,6 +11,7 @@
 
 #include "camera/pair_skew.hpp"
 #include "camera/stereo_frame.hpp"
+#include "mapping/hand_level.hpp"
 #include "mapping/tile_update.hpp"
 #include "mapping/view.hpp"
 #include "server/stored_view.hpp"
@@ -79,6 +80,7 @@ struct MapBegin {
   std::vector<TileUpdate> tiles;            // of a continued map
   std::vector<TrajectoryEntry> trajectory;  // of a continued map
   std::vector<SharedView> views;            // of a continued map
+  HandLevel level;                          // by hand, since the automatic start
 };
 
 }  // namespace flogmap

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "mapping/hand_level.hpp"
+
 namespace flogmap {
 
 enum class SessionState : std::uint8_t {
@@ -44,6 +46,12 @@ struct PlaybackChange {
   std::optional<bool> paused;
 };
 
+/// How the map was turned and raised by hand, and whether it can be now.
+struct LevelState {
+  HandLevel level;
+  std::string obstacle;  // in words: why not; empty if it can be
+};
+
 /// How the network side steers what makes the map. Every call returns at once and may come from any thread:
 /// commands go to the capture thread through a one-slot mailbox.
 class SessionControl {
@@ -59,6 +67,10 @@ class SessionControl {
   virtual ControlResult reset() = 0;
   virtual ControlResult change_playback(const PlaybackChange& change) = 0;
   virtual ControlResult step() = 0;  // one frame, while paused
+  [[nodiscard]] virtual LevelState levelling() const = 0;
+  /// Levels the map like this instead of as before. The path follows at once, the map when it has been built
+  /// anew from the views that it was made of.
+  virtual ControlResult level(const HandLevel& level) = 0;
 };
 
 }  // namespace flogmap

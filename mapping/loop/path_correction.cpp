@@ -17,7 +17,20 @@ SE3 between(const SE3& a, const SE3& b, double share) {
 
 }  // namespace
 
+PathCorrection PathCorrection::levelled(const HandLevel& level) const {
+  PathCorrection correction(knots_);
+  correction.level_ = level;
+  correction.map_from_start_ = level.map_from_start();
+  return correction;
+}
+
 std::optional<SE3> PathCorrection::map_from_odometry(std::int64_t timestamp_ns, int segment) const {
+  const std::optional<SE3> placed = start_from_odometry(timestamp_ns, segment);
+  if (!placed || level_.is_level()) return placed;
+  return map_from_start_ * *placed;
+}
+
+std::optional<SE3> PathCorrection::start_from_odometry(std::int64_t timestamp_ns, int segment) const {
   const auto at_or_after =
       std::lower_bound(knots_.begin(), knots_.end(), std::tuple(segment, timestamp_ns),
                        [](const CorrectionKnot& knot, const std::tuple<int, std::int64_t>& wanted) {

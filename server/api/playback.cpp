@@ -1,6 +1,4 @@
 // GET, PATCH /playback {position_s, rate, paused}; POST /playback:step
-#include <cmath>
-
 #include "server/api/json_body.hpp"
 #include "server/api/resources.hpp"
 
@@ -20,17 +18,6 @@ ApiResponse playback_response(ServerState& state) {
 }
 
 ApiAnswer get_playback(const ApiRequest&, ServerState& state) { return playback_response(state); }
-
-std::optional<double> number_field(const nlohmann::json& body, const char* name, double least, double most) {
-  if (!body.contains(name)) return std::nullopt;
-  const auto& field = body[name];
-  const double value = field.is_number() ? field.get<double>() : NAN;
-  if (value >= least && value <= most) return value;
-  throw RefusedRequest(
-      422, "bad-value",
-      std::string(name) + " must be a number from " + std::to_string(least) + " to " + std::to_string(most),
-      name);
-}
 
 PlaybackChange requested_change(const nlohmann::json& body) {
   for (const auto& [name, value] : body.items()) {

@@ -1,6 +1,8 @@
-// GET /session; POST /session:pause :resume :reset
+// GET /session; POST /session:pause :resume :reset :level
 #include <nlohmann/json.hpp>
+#include <numbers>
 
+#include "server/api/json_body.hpp"
 #include "server/api/resources.hpp"
 
 namespace flogmap {
@@ -25,6 +27,17 @@ Json skew_json(const std::optional<PairSkew>& skew) {
           {"histogram", bins}};
 }
 
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+Json level_json(const LevelState& levelling) {
+  const HandLevel& level = levelling.level;
+  return {{"roll_deg", level.roll_rad * kDegrees},
+          {"pitch_deg", level.pitch_rad * kDegrees},
+          {"yaw_deg", level.yaw_rad * kDegrees},
+          {"height_m", level.height_m},
+          {"obstacle", levelling.obstacle.empty() ? Json(nullptr) : Json(levelling.obstacle)}};
+}
+
 ApiResponse session_response(ServerState& state) {
   const StatusReport& report = state.status;
   Json json = {{"state", name_of(state.session_state())},
@@ -44,6 +57,7 @@ ApiResponse session_response(ServerState& state) {
                {"skipped_frames", report.skipped_frames},
                {"pair_skew", skew_json(report.skew)},
                {"alignment", report.alignment},
+               {"level", level_json(state.control.levelling())},
                {"viewers", state.num_viewers},
                {"warnings", report.warnings}};
   return json_response(json.dump());
@@ -60,13 +74,36 @@ ApiAnswer pause(const ApiRequest&, ServerState& state) { return answer_to(state.
 ApiAnswer resume(const ApiRequest&, ServerState& state) { return answer_to(state.control.resume(), state); }
 ApiAnswer reset(const ApiRequest&, ServerState& state) { return answer_to(state.control.reset(), state); }
 
+HandLevel requested_level(const nlohmann::json& body, const HandLevel& now) {
+  constexpr double kHighest_m = 100;
+  for (const auto& [name, value] : body.items()) {
+    if (name != "roll_deg" && name != "pitch_deg" && name != "yaw_deg" && name != "height_m") {
+      throw RefusedRequest(422, "unknown-field", "fields are roll_deg, pitch_deg, yaw_deg and height_m",
+                           name);
+    }
+  }
+  const auto angle_rad = [&](const char* name, double otherwise_rad) {
+    const std::optional<double> angle_deg = number_field(body, name, -180, 180);
+    return angle_deg ? *angle_deg / kDegrees : otherwise_rad;
+  };
+  return {angle_rad("roll_deg", now.roll_rad), angle_rad("pitch_deg", now.pitch_rad),
+          angle_rad("yaw_deg", now.yaw_rad),
+          number_field(body, "height_m", -kHighest_m, kHighest_m).value_or(now.height_m)};
+}
+
+ApiAnswer level(const ApiRequest& request, ServerState& state) {
+  const HandLevel wanted = requested_level(json_body(request), state.control.levelling().level);
+  return answer_to(state.control.level(wanted), state);
+}
+
 }  // namespace
 
 std::vector<Route> session_routes() {
   return {{Method::get, "/api/v1/session", Role::view, get_session},
           {Method::post, "/api/v1/session:pause", Role::control, pause},
           {Method::post, "/api/v1/session:resume", Role::control, resume},
-          {Method::post, "/api/v1/session:reset", Role::control, reset}};
+          {Method::post, "/api/v1/session:reset", Role::control, reset},
+          {Method::post, "/api/v1/session:level", Role::control, level}};
 }
 
 }  // namespace flogmap

@@ -56,10 +56,13 @@ class ServeObserver final : public PipelineObserver {
       hub_->rewrite_trajectory(path_, "levelled");
     }
   }
-  void path_rewritten(const std::vector<TrajectoryEntry>& path) override {
+  void path_rewritten(const std::vector<TrajectoryEntry>& path, const std::string& reason) override {
     path_ = path;
     if (store_ != nullptr) store_->rewrite_trajectory(path_);
-    hub_->rewrite_trajectory(path_, "loop closed");
+    hub_->rewrite_trajectory(path_, reason);
+  }
+  void map_levelled(const HandLevel& level) override {
+    if (store_ != nullptr) store_->put_level(level);
   }
   void frame_tracked(const TrackingReport& report) override {
     if (report.world_from_camera) tracked_ns_ = report.timestamp_ns;
@@ -91,7 +94,8 @@ MapBegin begin_of(const StoredMap& map, const std::string& reason) {
           .revision = map.revision,
           .tiles = map.tiles,
           .trajectory = map.trajectory,
-          .views = map.views};
+          .views = map.views,
+          .level = map.level};
 }
 
 /// Every *.flog of a folder, by the name of its file.
@@ -155,10 +159,12 @@ ContinuedMap continue_stored(MapStore& store, const Options& options, MappingSes
   }
   session.integrator.restore(snapshot_of(*stored));
   // A robot is where it was switched off; a recording begins where it always does.
-  if (session.source->info().live && !stored->trajectory.empty() && !options.first_pose) {
+  const bool stays = session.source->info().live && !stored->trajectory.empty() && !options.first_pose;
+  if (stays) {
     session.front_end.continue_from(stored->trajectory.back().world_from_camera);
+    stored->level = {};  // it stands in the levelled world
   }
-  return {stored->epoch, stored->tiles, stored->trajectory, stored->views};
+  return {stored->epoch, stored->tiles, stored->trajectory, stored->views, stored->level};
 }
 
 /// A store that cannot be used is bad input.
@@ -212,6 +218,7 @@ int serve_source(const Options& options, HubInfo info) {
   pipeline_options.rate = options.as_fast_as_possible ? 0 : 1;
   pipeline_options.loop = options.source.loop;
   pipeline_options.loop_closure = loop_options(options);
+  pipeline_options.keep_views = true;
 
   ServeObserver observer;
   Pipeline pipeline(pipeline_options, std::move(session.source), std::move(session.front_end),

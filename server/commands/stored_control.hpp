@@ -23,6 +23,8 @@ class StoredControl final : public SessionControl {
   ControlResult reset() override { return refuse(); }
   ControlResult change_playback(const PlaybackChange& /*change*/) override { return refuse(); }
   ControlResult step() override { return refuse(); }
+  [[nodiscard]] LevelState levelling() const override { return {{}, why_}; }
+  ControlResult level(const HandLevel& /*level*/) override { return refuse(); }
 
  private:
   [[nodiscard]] ControlResult refuse() const { return {ControlOutcome::illegal, why_}; }

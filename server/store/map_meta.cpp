@@ -58,6 +58,17 @@ StoredMap header_of(const Json& json) {
   return map;
 }
 
+/// Files of before maps could be levelled have none.
+HandLevel read_level(const SqliteDatabase& database) {
+  if (database.integer("SELECT count(*) FROM meta WHERE name = 'level'") == 0) return {};
+  const Json json = Json::parse(read_text(database, "level"));
+  try {
+    return {json.at("roll_rad"), json.at("pitch_rad"), json.at("yaw_rad"), json.at("height_m")};
+  } catch (const Json::exception& error) {
+    throw damaged(database.file(), std::string("meta 'level': ") + error.what());
+  }
+}
+
 void check_camera(const StereoCamera& camera) {
   const std::array numbers{camera.focal_px, camera.cx_px, camera.cy_px, camera.baseline_m};
   const bool finite = std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
@@ -94,6 +105,15 @@ void write_header(const SqliteDatabase& database, const StoredMap& map) {
   write_text(database, "map", json.dump());
   write_text(database, "options", map.options_json);
   write_text(database, "calibration", map.calibration_json);
+  write_level(database, map.level);
+}
+
+void write_level(const SqliteDatabase& database, const HandLevel& level) {
+  const Json json{{"roll_rad", level.roll_rad},
+                  {"pitch_rad", level.pitch_rad},
+                  {"yaw_rad", level.yaw_rad},
+                  {"height_m", level.height_m}};
+  write_text(database, "level", json.dump());
 }
 
 void write_seal(const SqliteDatabase& database, const MapSeal& seal) {
@@ -116,6 +136,7 @@ StoredMap read_header(const SqliteDatabase& database) {
   }
   map.options_json = read_text(database, "options");
   map.calibration_json = read_text(database, "calibration");
+  map.level = read_level(database);
   return map;
 }
 

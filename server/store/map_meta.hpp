@@ -24,6 +24,7 @@ void check_header(const StoredMap& map);
 
 /// Writes all of a map but its tables: what it is, with which options and calibration.
 void write_header(const SqliteDatabase& database, const StoredMap& map);
+void write_level(const SqliteDatabase& database, const HandLevel& level);
 void write_seal(const SqliteDatabase& database, const MapSeal& seal);
 
 /// False for a store in which no map was begun yet.

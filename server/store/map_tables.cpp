@@ -103,6 +103,8 @@ void MapTables::put_view(const StoredView& view) {
   seal_.views_sum += checksum;
 }
 
+void MapTables::put_level(const HandLevel& level) { write_level(database_, level); }
+
 void MapTables::write_seal() const { flogmap::write_seal(database_, seal_); }
 
 }  // namespace flogmap

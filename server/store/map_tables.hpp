@@ -23,6 +23,7 @@ class MapTables {
   void append_trajectory(std::span<const TrajectoryEntry> entries);
   void rewrite_trajectory(std::span<const TrajectoryEntry> entries);
   void put_view(const StoredView& view);
+  void put_level(const HandLevel& level);
   /// To be called last before a commit.
   void write_seal() const;
 

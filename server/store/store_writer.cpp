@@ -26,6 +26,7 @@ void StoreMailbox::merge(StoreMailbox later) {
   }
   new_poses.insert(new_poses.end(), std::make_move_iterator(later.new_poses.begin()),
                    std::make_move_iterator(later.new_poses.end()));
+  if (later.level) level = later.level;
   for (auto& [number, view] : later.views) {
     if (views.size() < kMaxWaitingViews || views.contains(number)) views[number] = std::move(view);
   }
@@ -69,6 +70,12 @@ void StoreWriter::rewrite_trajectory(std::vector<TrajectoryEntry> entries) {
 void StoreWriter::put_view(SharedView view) {
   StoreMailbox later;
   later.views[view->number] = std::move(view);
+  post(std::move(later));
+}
+
+void StoreWriter::put_level(const HandLevel& level) {
+  StoreMailbox later;
+  later.level = level;
   post(std::move(later));
 }
 
@@ -140,7 +147,7 @@ void StoreWriter::apply(const StoreMailbox& batch) {
   if (batch.begin) {
     const MapBegin& map = *batch.begin;
     store_.begin({map.epoch, map.info, map.camera, map.revision, map.tiles, map.trajectory, options_json_,
-                  calibration_json_, map.views});
+                  calibration_json_, map.views, map.level});
   }
   std::vector<TileUpdate> updates;
   for (const auto& [index, update] : batch.tiles) updates.push_back(update);
@@ -148,6 +155,7 @@ void StoreWriter::apply(const StoreMailbox& batch) {
   if (batch.path) store_.rewrite_trajectory(*batch.path);
   store_.append_trajectory(batch.new_poses);
   for (const auto& [number, view] : batch.views) store_.put_view(*view);
+  if (batch.level) store_.put_level(*batch.level);
 }
 
 /// What the disk refused waits for the next attempt, under what was published since.

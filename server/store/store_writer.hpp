@@ -33,9 +33,10 @@ struct StoreMailbox {
   std::optional<std::vector<TrajectoryEntry>> path;  // the whole path anew, before `new_poses`
   std::vector<TrajectoryEntry> new_poses;
   std::map<std::int64_t, SharedView> views;
+  std::optional<HandLevel> level;
 
   [[nodiscard]] bool empty() const {
-    return !begin && tiles.empty() && !path && new_poses.empty() && views.empty();
+    return !begin && tiles.empty() && !path && new_poses.empty() && views.empty() && !level;
   }
   /// Adds what was said later: a new map or path replaces what was before, a newer tile the older one.
   void merge(StoreMailbox later);
@@ -60,6 +61,7 @@ class StoreWriter {
   void append_trajectory(const std::vector<TrajectoryEntry>& entries);
   void rewrite_trajectory(std::vector<TrajectoryEntry> entries);
   void put_view(SharedView view);
+  void put_level(const HandLevel& level);
   [[nodiscard]] StoreState state() const;
 
   /// Commits now and returns when everything published before is durable, or when the disk refused it.

@@ -192,5 +192,89 @@ TEST(MapBuilder, AfterAResetNothingOfBeforeComesBack) {
   expect_same_cells(builder.map().snapshot(), from_scratch({views[0]}, {}));
 }
 
+const HandLevel kLevel{.roll_rad = 0.06, .pitch_rad = -0.1, .yaw_rad = 0.8, .height_m = -0.15};
+
+/// Views as if the camera had begun like this.
+std::vector<View> begun_at(const HandLevel& level, std::vector<View> views) {
+  for (View& view : views) view.world_from_camera = level.map_from_start() * view.world_from_camera;
+  return views;
+}
+
+void catch_up_whole(MapBuilder& builder) {
+  while (builder.is_behind()) builder.catch_up();
+}
+
+TEST(MapBuilder, LevelledByHandItIsTheMapOfAFirstPoseThatIsSo) {
+  const std::vector<View> views = random_views(10, 0);
+  MapBuilder builder(empty_map(), {});
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (i == 6) builder.correct(PathCorrection().levelled(kLevel));  // later views come levelled at once
+    View view = views[i];
+    builder.add(view);
+  }
+  EXPECT_NE(builder.level(), kLevel);  // not before it has caught up
+  catch_up_whole(builder);
+  EXPECT_EQ(builder.level(), kLevel);
+  expect_same_cells(builder.map().snapshot(), from_scratch(begun_at(kLevel, views), {}));
+}
+
+TEST(MapBuilder, LevelledBackItIsTheFirstMapAgain) {
+  const std::vector<View> views = random_views(8, 0);
+  MapBuilder builder(empty_map(), {});
+  for (View view : views) builder.add(view);
+  const MapSnapshot first = builder.map().snapshot();
+  builder.correct(PathCorrection().levelled(kLevel));
+  catch_up_whole(builder);
+  int differing = 0;
+  for (const auto& [index, tile] : first.tiles)
+    differing += builder.map().snapshot().tiles.at(index)->cells != tile->cells;
+  EXPECT_GT(differing, 0);
+  builder.correct(PathCorrection().levelled({}));
+  catch_up_whole(builder);
+  expect_same_cells(builder.map().snapshot(), first);
+}
+
+TEST(MapBuilder, AClosedLoopAndALevelAddUp) {
+  const std::vector<View> views = random_views(9, 0);
+  const PathCorrection loop = correction_until(views, 9, 0.02);
+  MapBuilder builder(empty_map(), {});
+  for (View view : views) builder.add(view);
+  builder.correct(loop.levelled(kLevel));
+  catch_up_whole(builder);
+  std::vector<View> placed = views;
+  for (View& view : placed) {
+    view.world_from_camera = *loop.map_from_odometry(view.timestamp_ns, 0) * view.world_from_camera;
+  }
+  // The order of the products differs: a ray in ten thousand may end in the next cell.
+  const MapSnapshot expected = from_scratch(begun_at(kLevel, placed), {});
+  std::int64_t cells = 0, differing = 0;
+  for (const auto& [index, tile] : expected.tiles) {
+    const auto& mine = builder.map().snapshot().tiles.at(index)->cells;
+    for (std::size_t i = 0; i < mine.size(); ++i) {
+      cells += tile->cells[i].rays > 0;
+      differing += mine[i] != tile->cells[i];
+    }
+  }
+  EXPECT_GT(cells, 1000);
+  EXPECT_LT(differing * 100, cells);
+}
+
+TEST(MapBuilder, OnlyAMapWhoseViewsAreAllKeptIsWhole) {
+  const std::vector<View> views = random_views(6, 0);
+  MapBuilder kept(empty_map(), {}), without(empty_map(), {.keep_views = false});
+  MapBuilder full(empty_map(), {.keep_views = true, .max_view_bytes = 1});
+  for (MapBuilder* builder : {&kept, &without, &full}) {
+    for (View view : views) builder->add(view);
+  }
+  EXPECT_TRUE(kept.is_whole());
+  EXPECT_FALSE(without.is_whole());
+  EXPECT_FALSE(full.is_whole());
+  full.reset();
+  EXPECT_TRUE(full.is_whole());
+  MapIntegrator earlier = empty_map();
+  earlier.restore(kept.map().snapshot());
+  EXPECT_FALSE(MapBuilder(std::move(earlier), {}).is_whole());
+}
+
 }  // namespace
 }  // namespace flogmap

@@ -50,6 +50,32 @@ TEST(CaptureControl, EveryIllegalTransitionIsRefusedWithAReason) {
   EXPECT_EQ(control.resume().outcome, ControlOutcome::illegal);
 }
 
+TEST(CaptureControl, ARecordingKeepsItsLevelWhenItBeginsAnewACameraDoesNot) {
+  const HandLevel wanted{.roll_rad = 0.1, .pitch_rad = 0.2, .yaw_rad = 0.3, .height_m = 0.4};
+  CaptureControl replay = running(recording()), live = running(camera());
+  for (CaptureControl* control : {&replay, &live}) {
+    EXPECT_EQ(control->level(wanted).outcome, ControlOutcome::illegal);  // not started yet
+    control->started();
+    EXPECT_EQ(control->level(wanted).outcome, ControlOutcome::done);
+    EXPECT_EQ(control->levelling().level, wanted);
+    EXPECT_EQ(control->await_turn().kind, CaptureTurn::Kind::level);
+    EXPECT_EQ(control->await_turn().kind, CaptureTurn::Kind::read);
+  }
+  EXPECT_EQ(replay.level_of_next_map(), wanted);
+  EXPECT_EQ(live.level_of_next_map(), HandLevel{});
+}
+
+TEST(CaptureControl, AMapThatCannotBeBuiltAnewIsNotLevelled) {
+  CaptureControl control = running(recording());
+  std::string obstacle = "its views are gone";
+  control.begin_level({}, [&] { return obstacle; });
+  control.started();
+  EXPECT_EQ(control.level({.height_m = 1}).detail, obstacle);
+  EXPECT_EQ(control.levelling().level, HandLevel{});
+  obstacle.clear();
+  EXPECT_EQ(control.level({.height_m = 1}).outcome, ControlOutcome::done);
+}
+
 TEST(CaptureControl, ALiveSourceIsNeitherReplayedNorStepped) {
   CaptureControl control = running(camera());
   control.started();

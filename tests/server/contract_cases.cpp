@@ -110,6 +110,10 @@ std::vector<Case> session_cases() {
       {"POST", "/api/v1/login", "/api/v1/login", 200, as_json, R"({"token":"view-secret"})"},
       {"POST", "/api/v1/login", "/api/v1/login", 401, as_json, R"({"token":"wrong-secret"})"},
       {"POST", "/api/v1/logout", "/api/v1/logout"},
+      {"POST", session + ":level", session + ":level", 200, as_json, R"({"roll_deg":2,"height_m":-0.1})"},
+      {"POST", session + ":level", session + ":level", 415, {{"Content-Type", "text/plain"}}, "{}"},
+      {"POST", session + ":level", session + ":level", 422, as_json, R"({"pitch_deg":181})"},
+      {"POST", session + ":level", session + ":level", 422, as_json, R"({"tilt":1})"},
       {"POST", session + ":reset", session + ":reset"},
   };
 }

@@ -43,6 +43,16 @@ class FakeSession : public SessionControl {
     return {};
   }
 
+  [[nodiscard]] LevelState levelling() const override {
+    const std::lock_guard lock(mutex_);
+    return {level_, {}};
+  }
+  ControlResult level(const HandLevel& level) override {
+    const std::lock_guard lock(mutex_);
+    level_ = level;
+    return {};
+  }
+
   void advance(double seconds) {
     const std::lock_guard lock(mutex_);
     playback_.position_s += seconds;
@@ -67,6 +77,7 @@ class FakeSession : public SessionControl {
   mutable std::mutex mutex_;
   PlaybackState playback_{
       .seekable = true, .position_s = 0, .duration_s = 60, .rate = 1, .paused = false, .loop = true};
+  HandLevel level_;
   int num_resets_ = 0;
   int num_steps_ = 0;
 };

@@ -1,4 +1,5 @@
-// hub_demo PORT SECONDS [WEB_ROOT [CERT KEY]]: a synthetic map, growing, through the real Hub. See README.md.
+// hub_demo PORT SECONDS [WEB_ROOT [HOUSES | CERT KEY]]: a synthetic map, growing, through the real Hub; of
+// one house, or of HOUSES alike, each of about 60 tiles, all of which change alike. See README.md.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -15,8 +16,24 @@ namespace {
 using namespace flogmap;
 using std::chrono::steady_clock;
 
+constexpr int kHouseTilesX = 11, kHouseTilesY = 8, kHousesInARow = 4;
+
+/// What happens in one house happens in all.
+std::vector<TileUpdate> in_every_house(const std::vector<TileUpdate>& tiles, int num_houses) {
+  std::vector<TileUpdate> all;
+  for (int house = 0; house < num_houses; ++house) {
+    const int dx = kHouseTilesX * (house % kHousesInARow), dy = kHouseTilesY * (house / kHousesInARow);
+    for (TileUpdate update : tiles) {
+      update.index = {update.index.x + dx, update.index.y + dy};
+      all.push_back(std::move(update));
+    }
+  }
+  return all;
+}
+
 /// Publishes 20 steps a second until told to stop or the time is up.
-void walk(Hub& hub, FakeSession& session, std::chrono::seconds duration, const std::stop_token& stop) {
+void walk(Hub& hub, FakeSession& session, int num_houses, std::chrono::seconds duration,
+          const std::stop_token& stop) {
   SyntheticWalk walk;
   int epoch = 1;
   hub.begin(walk.begin("demo000000000001", "started"));
@@ -28,7 +45,7 @@ void walk(Hub& hub, FakeSession& session, std::chrono::seconds duration, const s
       hub.begin(walk.begin("demo00000000000" + std::to_string(++epoch % 10), "reset by operator"));
     }
     if (!session.playback().paused || session.take_steps() > 0) {
-      auto tiles = walk.step();
+      auto tiles = in_every_house(walk.step(), num_houses);
       if (!tiles.empty()) hub.publish(walk.revision(), std::move(tiles));
       hub.publish_tracking(walk.tracking());
       if (hub.wants_pictures()) hub.publish_pictures(walk.pictures());
@@ -45,7 +62,7 @@ void walk(Hub& hub, FakeSession& session, std::chrono::seconds duration, const s
 
 int main(int argc, char** argv) try {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: hub_demo PORT SECONDS [WEB_ROOT [CERT KEY]]\n");
+    std::fprintf(stderr, "usage: hub_demo PORT SECONDS [WEB_ROOT [HOUSES | CERT KEY]]\n");
     return 2;
   }
   ServeOptions options;
@@ -63,7 +80,9 @@ int main(int argc, char** argv) try {
   std::printf("%s://127.0.0.1:%d\n", options.tls_cert.empty() ? "http" : "https", hub.port());
   std::fflush(stdout);
   const std::chrono::seconds duration(std::atoi(argv[2]));
-  const std::jthread walker([&](const std::stop_token& stop) { walk(hub, session, duration, stop); });
+  const int num_houses = argc == 5 ? std::atoi(argv[4]) : 1;
+  const std::jthread walker(
+      [&](const std::stop_token& stop) { walk(hub, session, num_houses, duration, stop); });
   hub.run();
   return 0;
 } catch (const std::exception& error) {

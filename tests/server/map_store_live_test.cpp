@@ -40,6 +40,22 @@ TEST(MapStore, GoesOnWithTheSameMapAfterARestart) {
   EXPECT_EQ(difference(*store.load(), map), "");
 }
 
+TEST(MapStore, KeepsHowTheMapWasLevelledUntilItIsLevelledAgain) {
+  const TemporaryFolder folder;
+  StoredMap map = random_map(1);
+  map.level = {.roll_rad = 0.1, .pitch_rad = -0.02, .yaw_rad = 1.5, .height_m = 0.3};
+  {
+    MapStore store(folder / "map.flog");
+    store.begin(map);
+    store.commit();
+    EXPECT_EQ(difference(*store.load(), map), "");
+    map.level.height_m = -0.1;
+    store.put_level(map.level);
+    store.commit();
+  }
+  EXPECT_EQ(difference(load_map(folder / "map.flog"), map), "");
+}
+
 TEST(MapStore, CanBeReadByOthersWhileItIsWritten) {
   const TemporaryFolder folder;
   const StoredMap first = random_map(1);

@@ -115,6 +115,7 @@ std::string difference(const StoredMap& a, const StoredMap& b) {
   if (a.info != b.info) return "info";
   if (a.camera != b.camera) return "camera";
   if (a.revision != b.revision) return "revision";
+  if (a.level != b.level) return "level";
   if (a.options_json != b.options_json || a.calibration_json != b.calibration_json) return "options";
   if (a.tiles.size() != b.tiles.size()) return "number of tiles";
   for (std::size_t i = 0; i < a.tiles.size(); ++i) {

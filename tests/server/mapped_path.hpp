@@ -1,6 +1,7 @@
 // A pipeline run to its end, and what came of it.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -19,9 +20,13 @@ class PathWitness final : public PipelineObserver {
   void path_grew(const std::vector<TrajectoryEntry>& entries) override {
     path.insert(path.end(), entries.begin(), entries.end());
   }
-  void path_rewritten(const std::vector<TrajectoryEntry>& whole) override {
+  void path_rewritten(const std::vector<TrajectoryEntry>& whole, const std::string& /*reason*/) override {
     path = whole;
     ++rewrites;
+  }
+  void map_levelled(const HandLevel& now) override {
+    level = now;
+    ++levelled;
   }
   void frame_tracked(const TrackingReport& report) override { reports.push_back(report); }
   void pictures_taken(const PictureReport& /*report*/) override {}
@@ -31,6 +36,8 @@ class PathWitness final : public PipelineObserver {
   std::vector<TrajectoryEntry> path;
   std::vector<TrackingReport> reports;
   int rewrites = 0;
+  HandLevel level;
+  std::atomic<int> levelled = 0;
 };
 
 struct MappedPath {
@@ -39,11 +46,13 @@ struct MappedPath {
   StatusReport status;
 };
 
-/// Maps a source to its end; `batch`: the map is built anew once, at the end, else whenever there is time.
+/// Maps a source to its end; `batch`: the map is built anew once, at the end, else whenever there is time,
+/// and then `level` is applied.
 inline std::unique_ptr<MappedPath> map_path(std::unique_ptr<StereoSource> source,
                                             const FrontEndOptions& front_end_options,
                                             std::optional<GivenPoses> poses, const FlogOptions& flog,
-                                            std::optional<LoopOptions> loops, bool batch = true) {
+                                            std::optional<LoopOptions> loops, bool batch = true,
+                                            const std::optional<HandLevel>& level = std::nullopt) {
   auto mapped = std::make_unique<MappedPath>();
   FrontEnd front_end(front_end_options, Rectifier(*source->calibration()), std::move(poses), std::nullopt);
   MapIntegrator integrator(flog, front_end.camera(), front_end.max_disparity_px());
@@ -55,6 +64,9 @@ inline std::unique_ptr<MappedPath> map_path(std::unique_ptr<StereoSource> source
   pipeline.start();
   if (!batch) {
     while (pipeline.control().state() != SessionState::finished) std::this_thread::yield();
+    if (level && pipeline.control().level(*level).outcome == ControlOutcome::done) {
+      while (mapped->witness.levelled == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
     pipeline.stop();
   }
   pipeline.wait();

@@ -72,13 +72,14 @@ FlogOptions coarse_map(int num_threads) {
 }
 
 std::unique_ptr<MappedPath> map_round_trip(const std::map<std::int64_t, SE3>& poses, bool close_loops,
-                                           int num_threads = 2, bool batch = true) {
+                                           int num_threads = 2, bool batch = true,
+                                           const std::optional<HandLevel>& level = std::nullopt) {
   FrontEndOptions options;
   options.views.translation_m = 0.01;  // every frame is a view
   options.stereo.num_threads = num_threads;
   return map_path(std::make_unique<MemorySource>(round_trip().recorded), options,
                   GivenPoses(poses, SE3::Identity()), coarse_map(num_threads),
-                  close_loops ? std::optional(LoopOptions{}) : std::nullopt, batch);
+                  close_loops ? std::optional(LoopOptions{}) : std::nullopt, batch, level);
 }
 
 /// A tile that one map lacks is unseen in the other.
@@ -138,6 +139,26 @@ TEST(PipelineLoops, NeitherThreadsNorTheMomentOfRebuildingChangeTheResult) {
     expect_same_cells(other->witness.tiles, one->map.tiles);
     expect_same_cells(one->map.tiles, other->witness.tiles);
   }
+}
+
+TEST(PipelineLoops, LevelledByHandPathAndMapAreThoseOfLevelledPoses) {
+  const HandLevel level{.roll_rad = 0.05, .pitch_rad = 0.03, .yaw_rad = -1, .height_m = 0.2};
+  const auto levelled = map_round_trip(round_trip().odometry, true, 2, false, level);
+  ASSERT_EQ(levelled->witness.levelled, 1);
+  EXPECT_EQ(levelled->witness.level, level);
+  const auto before = map_round_trip(round_trip().odometry, true);
+  std::map<std::int64_t, SE3> final_poses;
+  ASSERT_EQ(levelled->witness.path.size(), before->witness.path.size());
+  for (std::size_t i = 0; i < levelled->witness.path.size(); ++i) {
+    const TrajectoryEntry& entry = levelled->witness.path[i];
+    final_poses[entry.timestamp_ns] = entry.world_from_camera;
+    EXPECT_TRUE(entry.world_from_camera.isApprox(
+        level.map_from_start() * before->witness.path[i].world_from_camera, 1e-9));
+  }
+  const auto from_scratch = map_round_trip(final_poses, false);
+  expect_same_cells(levelled->map.tiles, from_scratch->map.tiles);
+  expect_same_cells(from_scratch->map.tiles, levelled->map.tiles);
+  expect_same_cells(levelled->witness.tiles, levelled->map.tiles);  // viewers were told all of it
 }
 
 }  // namespace

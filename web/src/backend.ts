@@ -1,5 +1,6 @@
 // What the page asks the server for outside the stream: steering, routes, files. One implementation per kind of server.
 
+import type { Level } from './level';
 import type { MappedView, ViewCameraModel } from './walk/view_choice';
 
 /** The mapped views that have a mesh. */
@@ -44,6 +45,9 @@ export interface Backend {
   reset(): Promise<void>;
   changePlayback(change: PlaybackChange): Promise<void>;
   step(): Promise<void>;
+  /** How the map is levelled by hand, and why it cannot be now (empty: it can). */
+  level(): Promise<{ level: Level; obstacle: string }>;
+  setLevel(level: Level): Promise<void>;
   /** From a spot, or from where the camera is now. */
   route(from: Spot | undefined, to: Spot, robot: Robot): Promise<Route>;
   reach(from: Spot | undefined, robot: Robot): Promise<Reach>;
@@ -81,6 +85,8 @@ export function restBackend(base: string, ask: Fetch = (input, init) => fetch(in
     resume: () => post('session:resume'),
     reset: () => post('session:reset'),
     step: () => post('playback:step'),
+    level: async () => levelFrom(await send('GET', 'session')),
+    setLevel: async ({ roll, pitch, yaw, height }) => void (await send('POST', 'session:level', { roll_deg: roll, pitch_deg: pitch, yaw_deg: yaw, height_m: height })),
     changePlayback: async (change) => void (await send('PATCH', 'playback', change)),
     route: async (from, to, robot) => routeFrom(await send('POST', 'maps/live/route', { from: startOf(from), to: [to.x, to.y], ...sizeOf(robot) })),
     reach: async (from, robot) => reachFrom(await send('POST', 'maps/live/reachable', { from: startOf(from), ...sizeOf(robot) })),
@@ -112,6 +118,11 @@ function routeFrom(answer: unknown): Route {
     lengthM: Number(length_m ?? 0),
     clearanceM: Number(clearance_m ?? 0),
   };
+}
+
+function levelFrom(answer: unknown): { level: Level; obstacle: string } {
+  const { level } = answer as { level: { roll_deg: number; pitch_deg: number; yaw_deg: number; height_m: number; obstacle: string | null } };
+  return { level: { roll: level.roll_deg, pitch: level.pitch_deg, yaw: level.yaw_deg, height: level.height_m }, obstacle: level.obstacle ?? '' };
 }
 
 function viewsFrom(answer: unknown): ViewList {

@@ -167,8 +167,9 @@ describe('connection', () => {
 
   it('lags while a ping is not answered, and recovers', () => {
     comeUp();
-    clock.pass(PING_EVERY_MS);
+    clock.pass(PING_EVERY_MS / 2);
     hear(tiles(8n, true)); // bytes come, but no answer
+    expect(connection.state.phase).toBe('live'); // late once: a busy moment
     clock.pass(PING_EVERY_MS);
     expect(connection.state.phase).toBe('lagging');
     expect((connection.state as { lagMs: number }).lagMs).toBeGreaterThanOrEqual(LAGGING_FROM_MS);
@@ -178,6 +179,18 @@ describe('connection', () => {
     while (socket().last('ping')?.nonce === nonce) clock.pass(50);
     hear({ kind: 'message', message: { case: 'pong', value: create(PongSchema, { nonce: nonce + 1n }) } });
     expect(connection.state.phase).toBe('live');
+  });
+
+  it('does not call one slow answer lagging, nor one that is quick again', () => {
+    comeUp();
+    hear({ kind: 'message', message: { case: 'pong', value: create(PongSchema, { nonce: socket().last('ping')?.nonce ?? 0n }) } });
+    for (const [roundTrip, phase] of [[900, 'live'], [100, 'live'], [900, 'live'], [900, 'lagging'], [600, 'lagging'], [400, 'live']] as const) {
+      const before = socket().last('ping')?.nonce;
+      while (socket().last('ping')?.nonce === before) clock.pass(50);
+      clock.pass(roundTrip - 50);
+      hear({ kind: 'message', message: { case: 'pong', value: create(PongSchema, { nonce: socket().last('ping')?.nonce ?? 0n }) } });
+      expect([roundTrip, connection.state.phase]).toEqual([roundTrip, phase]);
+    }
   });
 
   it('takes a silent server for dead, and never shows live meanwhile', () => {

@@ -9,7 +9,8 @@ import { keyText, type TileKey } from './tile_store';
 
 export const SUBPROTOCOL = 'flogmap.v1.proto';
 export const PING_EVERY_MS = 2000;
-export const LAGGING_FROM_MS = 700;
+export const LAGGING_FROM_MS = 700; // twice in a row: a busy page answers late now and then
+export const LIVE_BELOW_MS = 500;
 export const DEAD_AFTER_MS = 12000; // without a byte from the server
 export const BACK_OFF_MS = [500, 1000, 2000, 4000, 8000, 15000] as const;
 
@@ -62,6 +63,7 @@ export class Connection {
   private lastHeard = 0;
   private ping = { nonce: 0n, sentAt: 0, open: false, roundTrip: 0 };
   private watchDue = 0;
+  private late = false; // so it was at the last look
   private lostAt = 0; // when the page stopped being live
   private farewell: { reason: string; retryMs: number } | null = null;
   private subscription: MessageInitShape<typeof SubscribeSchema> = {};
@@ -85,7 +87,7 @@ export class Connection {
     this.dropSocket();
     if (this.current.phase !== 'offline') this.enter({ phase: 'connecting' });
     const number = ++this.number;
-    Object.assign(this, { bytesTaken: 0, farewell: null, watchDue: 0, lastHeard: this.parts.clock.now() });
+    Object.assign(this, { bytesTaken: 0, farewell: null, watchDue: 0, late: false, lastHeard: this.parts.clock.now() });
     this.ping = { nonce: 0n, sentAt: 0, open: false, roundTrip: 0 };
     const socket = this.parts.openSocket();
     socket.binaryType = 'arraybuffer';
@@ -213,7 +215,11 @@ export class Connection {
 
   private showLag(lagMs: number): void {
     if (this.current.phase !== 'live' && this.current.phase !== 'lagging') return;
-    this.enter({ phase: lagMs >= LAGGING_FROM_MS ? 'lagging' : 'live', lagMs });
+    const { phase } = this.current;
+    const lateAgain = lagMs >= LAGGING_FROM_MS && this.late;
+    this.late = lagMs >= LAGGING_FROM_MS;
+    if (phase === 'live' && this.late && !lateAgain) return; // once is not yet a rule
+    this.enter({ phase: lateAgain || (phase === 'lagging' && lagMs >= LIVE_BELOW_MS) ? 'lagging' : 'live', lagMs });
   }
 
   private lost(reason: string): void {

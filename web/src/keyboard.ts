@@ -64,6 +64,7 @@ function chooses(page: Page, actions: KeyActions, key: string): boolean {
     case 'h': toggleHold(page); return true;
     case 'm': toggleTool(page, 'measure'); return true;
     case 'r': toggleTool(page, 'route'); return true;
+    case 't': toggleTool(page, 'level'); return true;
     case 'w': toggleWalk(page); return true;
     case 'p': pinCell(page); return true;
     case 'c': void navigator.clipboard.writeText(asJson(page)); return true;
@@ -75,7 +76,7 @@ function chooses(page: Page, actions: KeyActions, key: string): boolean {
     case 'backspace': return actions.back();
     case 'escape':
       if (focus.get().walking) leaveWalk(page);
-      focus.set({ tool: 'inspect', cell: undefined, sheet: 'none' });
+      focus.set({ tool: 'inspect', cell: undefined, sheet: 'none', floor: undefined });
       return true;
     default: return false;
   }

@@ -26,7 +26,7 @@ const query = new URLSearchParams(location.search);
 const linked = readHash(location.hash);
 const settings = keptSettings(query.has('fresh') ? null : localStorage);
 settings.set(linked.settings);
-const focus = new Store<Focus>({ tool: 'inspect', hover: undefined, cell: linked.cell, pins: [], sheet: 'none', theme: 'dark', heldSince: 0, walking: false });
+const focus = new Store<Focus>({ tool: 'inspect', hover: undefined, cell: linked.cell, pins: [], sheet: 'none', theme: 'dark', heldSince: 0, walking: false, floor: undefined });
 const phone = matchMedia('(max-width: 760px)').matches;
 const budget = Number(query.get('budget') ?? (phone ? 96 : 256)) * 2 ** 20; // bytes of tiles held
 const live = new LiveMap(new TileStore(budget));
@@ -46,7 +46,10 @@ decoder.onmessage = ({ data }: MessageEvent<DecodeAnswer>) => {
   if (data.event) connection.received(data.connection, data.size, data.event);
   else connection.unreadable(data.connection, data.error ?? 'unknown');
 };
-connection.events.on((event) => live.take(event));
+connection.events.on((event) => {
+  const still = event.kind === 'image' && focus.get().floor !== undefined; // points are being picked in it
+  if (!still) live.take(event);
+});
 
 function openWebSocket(): Socket {
   const url = new URL('stream', apiBase);

@@ -10,7 +10,7 @@ import type { Settings } from './settings';
 import type { Store } from './signal';
 import type { Point } from './viewport';
 
-export type Tool = 'inspect' | 'measure' | 'route';
+export type Tool = 'inspect' | 'measure' | 'route' | 'level';
 export type Sheet = 'none' | 'map' | 'camera' | 'cell' | 'status';
 
 /** What is being pointed at and worked on; not kept between visits. */
@@ -25,6 +25,8 @@ export interface Focus {
   readonly heldSince: number;
   /** First person through the map. */
   readonly walking: boolean;
+  /** Points of the floor picked so far in the left picture, as shares of its size; undefined: nobody picks. */
+  readonly floor: readonly Point[] | undefined;
 }
 
 export interface Page {

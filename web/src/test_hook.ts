@@ -12,6 +12,13 @@ export interface TestHook {
   readonly shownTiles: number;
   readonly walk: WalkState & { readonly position: readonly number[] };
   tiles(): number;
+  /** Of tiles in memory, and of their textures on the graphics card. */
+  readonly tileBytes: number;
+  readonly textureBytes: number;
+  /** Time of the newest pose, s. */
+  readonly poseS: number;
+  /** Where the path begins and ends. */
+  readonly path: readonly (readonly number[])[];
   keys(): string[];
   /** E, O, K, C per cell and layer as held, or null. */
   tile(level: number, x: number, y: number): { rev: number; planes: number[] } | null;
@@ -32,6 +39,10 @@ export function installTestHook(page: Page): void {
     get shownTiles() { return view.shown.length; },
     get walk() { return { ...page.walk.state, position: page.walk.walker.position }; },
     tiles: () => live.tiles.count,
+    get tileBytes() { return live.tiles.bytes; },
+    get textureBytes() { return view.textureBytes; },
+    get poseS() { return Number(live.pose?.timeNs ?? 0n) / 1e9; },
+    get path() { return [live.trajectory[0], live.trajectory.at(-1)].map((point) => (point?.pose ? [point.pose.x, point.pose.y, point.pose.z] : [])); },
     keys: () => Array.from(live.tiles.all(), (tile) => `${tile.level}/${tile.x}/${tile.y}`),
     tile: (level, x, y) => {
       const tile = live.tiles.get({ level, x, y });

@@ -11,6 +11,8 @@ export function mockBackend(server: MockServer): Backend {
     reset: () => Promise.resolve(server.order('reset')),
     changePlayback: no('Replay'),
     step: no('Replay'),
+    level: no('Levelling'),
+    setLevel: no('Levelling'),
     route: no('A route'),
     reach: no('Where a robot can get to'),
     views: no('A walkthrough'),

@@ -13,6 +13,10 @@ interface Chart {
   readonly unit: string;
   readonly curves: readonly string[];
   sample(page: Page): (number | null)[];
+  /** The last curve is a limit: dashed. */
+  readonly limit?: boolean;
+  /** There is nothing to show with this source. */
+  absent?(page: Page): boolean;
 }
 
 const STAGES = ['rectify', 'disparity', 'odometry', 'map'] as const;
@@ -24,6 +28,11 @@ function charts(): readonly Chart[] {
     { title: 'Frames', unit: '/s', curves: ['frames'], sample: ({ live }) => [live.status?.framesPerS ?? null] },
     { title: 'Stages', unit: 'ms', curves: STAGES, sample: ({ live }) => STAGES.map((name) => live.status?.stages.find(({ stage }) => stage === name)?.medianMs ?? null) },
     { title: 'Inliers', unit: '', curves: ['inliers'], sample: ({ live }) => [live.pose ? live.pose.inliers : null] },
+    {
+      title: 'Left to right', unit: 'ms', curves: ['mean', 'largest', 'allowed'], limit: true,
+      absent: ({ live }) => !live.status?.pairSkew,
+      sample: ({ live: { status } }) => [status?.pairSkew?.meanMs ?? null, status?.pairSkew?.largestMs ?? null, status?.pairSkew?.allowedMs ?? null],
+    },
     { title: 'Tiles', unit: '', curves: ['on server', 'in page'], sample: ({ live }) => [live.status ? Number(live.status.tiles) : null, live.tiles.count] },
     { title: 'Memory of the page', unit: 'MiB', curves: ['tiles', 'meshes'], sample: ({ live, walk }) => [live.tiles.bytes / 2 ** 20, walk.state.bytes / 2 ** 20] },
     { title: 'Round trip', unit: 'ms', curves: ['lag'], sample: ({ connection: { state } }) => [state.phase === 'live' || state.phase === 'lagging' ? state.lagMs : null] },
@@ -50,12 +59,14 @@ function curves(page: Page, chart: Chart, into: HTMLElement): () => void {
   const value = h('span', {});
   const place = h('div', { class: 'chart' });
   const keys = chart.curves.length > 1 ? chart.curves.map((name, i) => h('span', { class: `curve-key curve-key-${i + 1}` }, name)) : [];
-  into.append(h('figure', { class: 'chart-box', 'aria-label': `${chart.title} of the last two minutes` },
-    h('figcaption', {}, h('b', {}, chart.title), ...keys, value), place));
+  const box = h('figure', { class: 'chart-box', 'aria-label': `${chart.title} of the last two minutes` },
+    h('figcaption', {}, h('b', {}, chart.title), ...keys, value), place);
+  into.append(box);
   const data: (number | null)[][] = [[], ...chart.curves.map(() => [] as (number | null)[])];
   let plot: uPlot | null = null;
   let look = '';
   return () => {
+    box.hidden = chart.absent?.(page) ?? false;
     const sample = chart.sample(page);
     [Date.now() / 1000, ...sample].forEach((next, i) => data[i]?.push(next));
     for (const list of data) while (list.length > KEPT_S) list.shift();
@@ -65,13 +76,13 @@ function curves(page: Page, chart: Chart, into: HTMLElement): () => void {
     const now = `${page.focus.get().theme} ${place.clientWidth}`;
     if (now !== look) {
       plot?.destroy();
-      plot = new uPlot(options(place, chart.curves.length), data as uPlot.AlignedData, place);
+      plot = new uPlot(options(place, chart), data as uPlot.AlignedData, place);
       look = now;
     } else plot?.setData(data as uPlot.AlignedData);
   };
 }
 
-function options(place: HTMLElement, count: number): uPlot.Options {
+function options(place: HTMLElement, { curves: names, limit }: Chart): uPlot.Options {
   const style = getComputedStyle(place);
   const colour = (name: string): string => style.getPropertyValue(name).trim();
   const axis = { stroke: colour('--text-3'), font: `10px ${style.fontFamily}`, grid: { stroke: colour('--line'), width: 1 }, ticks: { show: false } };
@@ -79,6 +90,6 @@ function options(place: HTMLElement, count: number): uPlot.Options {
     width: place.clientWidth, height: HEIGHT_PX, legend: { show: false }, cursor: { show: false }, padding: [6, 4, 0, 0],
     scales: { x: { time: false, range: () => [Date.now() / 1000 - KEPT_S, Date.now() / 1000] }, y: { range: (_, __, max) => [0, Math.max(1, (max ?? 1) * 1.15)] } },
     axes: [{ show: false }, { ...axis, size: 34 }],
-    series: [{}, ...Array.from({ length: count }, (_, i) => ({ stroke: colour(CURVE_COLOURS[i] ?? '--curve-1'), width: 1.5, points: { show: false } }))],
+    series: [{}, ...names.map((_, i) => ({ stroke: colour(CURVE_COLOURS[i] ?? '--curve-1'), width: 1.5, points: { show: false }, ...(limit && i === names.length - 1 ? { dash: [4, 3] } : {}) }))],
   };
 }

@@ -6,7 +6,7 @@ import { button } from '../ui/controls';
 const KEYS: readonly (readonly [string, string])[] = [
   ['Drag, arrow keys', 'move the map'], ['Wheel, + −, pinch', 'zoom'], ['Right drag, Q E, twist', 'turn the map'], ['0', 'show the whole map'], ['N', 'north up'],
   ['F', 'follow the camera: north up, heading up, free'], ['V', 'flat map or layers at their height'], ['W', 'walk through the mapped views; W A S D move, drag looks, Esc leaves'], ['H', 'hold the picture while the map goes on'], ['1 … 9', 'show or hide a layer'], ['Shift 1 … 9', 'show a layer alone'],
-  ['Click', 'read a cell'], ['P, C', 'pin the cell, copy it as JSON'], ['M', 'measure: lengths and areas'], ['R', 'route: two clicks'], ['S', 'next map rule'], ['G', 'grid'],
+  ['Click', 'read a cell'], ['P, C', 'pin the cell, copy it as JSON'], ['M', 'measure: lengths and areas'], ['R', 'route: two clicks'], ['T', 'level and turn the map by hand'], ['S', 'next map rule'], ['G', 'grid'],
   ['Space', 'pause or go on mapping'], ['L', 'copy a link to this view'], ['[  ]', 'panels on the left and right'], ['Esc', 'leave the tool, let go of the cell'],
 ];
 

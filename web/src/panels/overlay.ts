@@ -3,6 +3,7 @@
 import { areaOf, lengthOf } from '../geometry';
 import type { Page } from '../page';
 import { append, h, setText, svg } from '../ui/dom';
+import { LevelTool } from './level_tool';
 import { RobotTool } from './robot_tool';
 import type { Point } from '../viewport';
 
@@ -23,7 +24,8 @@ export function overlay(page: Page): Overlay {
   const words = h('span', { role: 'status' });
   const work: Work = { measured: [] };
   const robot = new RobotTool(page, () => redraw());
-  const card = h('div', { class: 'tool-card', hidden: true }, words, robot.element);
+  const level = new LevelTool(page);
+  const card = h('div', { class: 'tool-card', hidden: true }, words, robot.element, level.element);
   const redraw = (): void => {
     drawing.replaceChildren();
     drawCells(page, drawing);
@@ -49,6 +51,7 @@ export function overlay(page: Page): Overlay {
   };
   const click = (world: Point): void => {
     if (page.focus.get().tool === 'route') return robot.click(world);
+    if (page.focus.get().tool !== 'measure') return;
     work.measured.push(world);
     redraw();
   };

@@ -1,6 +1,7 @@
 // What the camera sees: left picture with the tracked corners, disparity with its scale, and how old they are.
 
 import type { ImageEvent } from '../decode';
+import { placeOnRamp } from '../floor_samples';
 import { ImageStream } from '../gen/flogmap/v1/stream_pb';
 import { cssColour, rampColour } from '../palette';
 import type { Page } from '../page';
@@ -60,9 +61,36 @@ function picture(page: Page, stream: ImageStream, title: string, emptyText: stri
       if (stream !== ImageStream.DISPARITY) measureLight(page, stream, next);
     }, () => setText(age, 'unreadable picture'));
   });
+  if (stream === ImageStream.LEFT) pickFloor(page, canvas, redraw);
   if (stream === ImageStream.DISPARITY) depthUnderCursor(page, canvas, readout);
   setInterval(() => showAge(page, stream, age), 500);
   return { element, redraw };
+}
+
+/** While the floor is being picked, clicks in the left picture are its points. */
+function pickFloor(page: Page, canvas: HTMLCanvasElement, redraw: () => void): void {
+  canvas.addEventListener('click', (event) => {
+    const { floor } = page.focus.get();
+    if (!floor || floor.length >= 3) return;
+    const box = canvas.getBoundingClientRect();
+    page.focus.set({ floor: [...floor, { x: (event.clientX - box.left) / box.width, y: (event.clientY - box.top) / box.height }] });
+  });
+  page.focus.watch(['floor'], ({ floor }) => {
+    canvas.classList.toggle('picking', floor !== undefined);
+    redraw();
+  });
+}
+
+function paintFloor(page: Page, context: CanvasRenderingContext2D): void {
+  const { floor } = page.focus.get();
+  if (!floor?.length) return;
+  const { width, height } = context.canvas;
+  context.strokeStyle = context.fillStyle = '#ffd23f';
+  context.lineWidth = Math.max(1.5, width / 240);
+  context.beginPath();
+  for (const { x, y } of floor) context.lineTo(x * width, y * height);
+  context.stroke();
+  for (const { x, y } of floor) context.fillRect(x * width - width / 100, y * height - width / 100, width / 50, width / 50);
 }
 
 const lightCanvas = h('canvas', { width: 32, height: 24 });
@@ -92,6 +120,7 @@ function paint(page: Page, canvas: HTMLCanvasElement, bitmap: ImageBitmap, strea
   context.drawImage(bitmap, 0, 0);
   const image = page.live.images.get(stream);
   if (stream === ImageStream.LEFT && page.settings.get().showFeatures && image) paintFeatures(page, context, image);
+  if (stream === ImageStream.LEFT) paintFloor(page, context);
 }
 
 function paintFeatures(page: Page, context: CanvasRenderingContext2D, image: ImageEvent): void {
@@ -113,7 +142,6 @@ function paintFeatures(page: Page, context: CanvasRenderingContext2D, image: Ima
 
 /** Reads a pixel's disparity back from its colour's place on the scale, and says what depth it means. */
 function depthUnderCursor(page: Page, canvas: HTMLCanvasElement, readout: HTMLElement): void {
-  const ramp = Array.from({ length: 256 }, (_, i) => rampColour('viridis', i / 255));
   canvas.addEventListener('pointermove', (event) => {
     const box = canvas.getBoundingClientRect();
     const x = Math.floor(((event.clientX - box.left) / box.width) * canvas.width);
@@ -121,15 +149,10 @@ function depthUnderCursor(page: Page, canvas: HTMLCanvasElement, readout: HTMLEl
     const image = page.live.images.get(ImageStream.DISPARITY);
     const pixel = canvas.getContext('2d', { willReadFrequently: true })?.getImageData(x, y, 1, 1).data;
     if (!pixel || !image || !page.live.camera) return;
-    let best = 0;
-    let least = Infinity;
-    ramp.forEach(([r, g, b], i) => {
-      const away = (r - (pixel[0] ?? 0)) ** 2 + (g - (pixel[1] ?? 0)) ** 2 + (b - (pixel[2] ?? 0)) ** 2;
-      if (away < least) [least, best] = [away, i];
-    });
-    const px = image.scale[0] + (best / 255) * (image.scale[1] - image.scale[0]);
+    const place = placeOnRamp(pixel[0] ?? 0, pixel[1] ?? 0, pixel[2] ?? 0);
+    const px = image.scale[0] + (place ?? 0) * (image.scale[1] - image.scale[0]);
     const depth = (page.live.camera.focalPx * page.live.camera.baselineM) / Math.max(px, 1e-3);
-    setText(readout, least > 2500 || px < 0.5 ? 'no match' : `≈ ${px.toFixed(1)} px, ${depth.toFixed(2)} m`);
+    setText(readout, place === undefined || px < 0.5 ? 'no match' : `≈ ${px.toFixed(1)} px, ${depth.toFixed(2)} m`);
   });
   canvas.addEventListener('pointerleave', () => setText(readout, ''));
 }

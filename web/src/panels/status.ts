@@ -1,13 +1,14 @@
 // How the session is doing: state, rates, sizes, stage times, and warnings in words.
 
-import { TrackingState } from '../gen/flogmap/v1/map_pb';
+import { TrackingState, type TrajectoryPoint } from '../gen/flogmap/v1/map_pb';
 import { ImageStream, type PairSkew, type Status } from '../gen/flogmap/v1/stream_pb';
-import { lengthOf } from '../geometry';
 import type { Page } from '../page';
 import { h, setText } from '../ui/dom';
 import { icon } from '../ui/icons';
 import { section } from '../ui/controls';
 import { lightWarnings, speedWarnings } from '../warnings';
+
+const SHOW_EVERY_MS = 250; // words that change faster cannot be read
 
 export const TRACKING_WORDS: Record<TrackingState, string> = {
   [TrackingState.INITIALISING]: 'starting', [TrackingState.OK]: 'good', [TrackingState.WEAK]: 'weak', [TrackingState.LOST]: 'lost',
@@ -25,13 +26,19 @@ export function statusPanel(page: Page, charts: Node): HTMLElement {
   const facts = h('dl', { class: 'facts' });
   const stages = h('div', { class: 'stages' });
   let received = { bytes: 0, at: performance.now(), rate: 0 };
+  const meter = pathMeter();
+  let metres = 0;
+  page.live.trajectoryChanged.on(({ from }) => (metres = meter(page.live.trajectory, from)));
+  let due = 0;
   const show = (): void => {
     const now = performance.now();
+    if (now < due) return;
+    due = now + SHOW_EVERY_MS;
     if (now - received.at > 900) {
       const bytes = page.connection.receivedBytes;
       received = { bytes, at: now, rate: ((bytes - received.bytes) * 1000) / (now - received.at) };
     }
-    setFacts(facts, factsOf(page, received.rate));
+    setFacts(facts, factsOf(page, received.rate, metres));
     showStages(stages, page.live.status);
     const words = warningsOf(page);
     warnings.replaceChildren(...words.map((text) => h('li', {}, icon('warning'), h('span', {}, text))));
@@ -55,9 +62,22 @@ export function warningsOf(page: Page): string[] {
   return [...tracking, ...own, ...(status?.warnings ?? [])];
 }
 
-function factsOf(page: Page, bytesPerSecond: number): readonly (readonly [string, string])[] {
+/** Length of a path that grows: only what came since the last look is added. */
+export function pathMeter(): (points: readonly TrajectoryPoint[], from: number) => number {
+  let sums: number[] = [];
+  return (points, from) => {
+    sums.length = Math.min(sums.length, Math.max(0, from));
+    for (let i = sums.length; i < points.length; ++i) {
+      const [a, b] = [points[i - 1]?.pose, points[i]?.pose];
+      sums.push((sums[i - 1] ?? 0) + (a && b ? Math.hypot(b.x - a.x, b.y - a.y) : 0));
+    }
+    if (points.length === 0) sums = [];
+    return sums.at(-1) ?? 0;
+  };
+}
+
+function factsOf(page: Page, bytesPerSecond: number, metres: number): readonly (readonly [string, string])[] {
   const { status, pose, tiles, trajectory, rev } = page.live;
-  const metres = lengthOf(trajectory.flatMap((point) => (point.pose ? [point.pose] : [])));
   const alignment = status?.alignment ? [['Heights from', status.alignment] as const] : [];
   return [
     ['Tracking', pose ? `${TRACKING_WORDS[pose.state]}, ${pose.inliers} inliers` : '–'],

@@ -22,6 +22,7 @@ export function toolbar(page: Page): HTMLElement {
   const measure = iconButton('ruler', 'Measure', () => toggleTool(page, 'measure'), 'M');
   const hold = iconButton('pause', 'Hold the picture', () => toggleHold(page), 'H');
   const route = iconButton('route', 'Route', () => toggleTool(page, 'route'), 'R');
+  const level = iconButton('level', 'Level the map', () => toggleTool(page, 'level'), 'T');
   const walk = iconButton('person', 'Walk through the mapped views', () => toggleWalk(page), 'W');
   settings.watch(['follow', 'solid'], (now) => {
     follow.setAttribute('aria-pressed', String(now.follow !== 'free'));
@@ -35,6 +36,7 @@ export function toolbar(page: Page): HTMLElement {
     setIcon(hold, heldSince > 0 ? 'play' : 'pause', heldSince > 0 ? 'Let the picture go on' : 'Hold the picture');
     measure.setAttribute('aria-pressed', String(tool === 'measure'));
     route.setAttribute('aria-pressed', String(tool === 'route'));
+    level.setAttribute('aria-pressed', String(tool === 'level'));
   });
   const needle = north.querySelector('svg');
   view.drawn.on(({ turn }) => {
@@ -44,7 +46,7 @@ export function toolbar(page: Page): HTMLElement {
   return h('div', { class: 'toolbar', role: 'toolbar', 'aria-label': 'Map tools' },
     h('div', { class: 'tool-group' }, iconButton('plus', 'Zoom in', () => view.zoomBy(1.5), '+'), iconButton('minus', 'Zoom out', () => view.zoomBy(1 / 1.5), '−'), iconButton('fit', 'Show the whole map', () => showAll(page), '0')),
     h('div', { class: 'tool-group' }, follow, north, solid, hold),
-    h('div', { class: 'tool-group' }, measure, route), h('div', { class: 'tool-group tool-group-walk' }, walk));
+    h('div', { class: 'tool-group' }, measure, route, level), h('div', { class: 'tool-group tool-group-walk' }, walk));
 }
 
 export function showAll(page: Page): void {

@@ -1,9 +1,10 @@
 // The map on screen. Holds the viewport, draws at most once per animation frame and only when something changed.
 
-import { Color, Mesh, Scene, WebGLRenderer } from 'three';
+import { Color, Mesh, Scene, WebGLRenderer, type Group } from 'three';
 import { heading } from '../geometry';
 import { ImageStream } from '../gen/flogmap/v1/stream_pb';
 import type { Reach } from '../backend';
+import type { Motion } from '../level';
 import type { LiveMap } from '../live_map';
 import { classColours, cssColour, type Theme } from '../palette';
 import type { Settings } from '../settings';
@@ -72,6 +73,11 @@ export class MapView {
     return this.tiles.shown;
   }
 
+  /** Of the tiles, on the graphics card. */
+  get textureBytes(): number {
+    return this.tiles.textureBytes;
+  }
+
   setTheme(theme: Theme): void {
     this.theme = theme;
     this.stale.settings = true;
@@ -89,6 +95,14 @@ export class MapView {
     this.walkthrough = walkthrough;
     this.ground.visible = this.path.group.visible = this.marker.group.visible = !walkthrough;
     this.stale = { tiles: true, path: true, settings: true };
+    this.requestDraw();
+  }
+
+  /** Tries out another level: moves the tiles, or path and camera, by this; undefined puts them back. */
+  tilt(tiles: Motion | 'as it is' | undefined, path: Motion | undefined): void {
+    if (tiles !== 'as it is') place(this.tiles.group, tiles);
+    place(this.path.group, path);
+    place(this.marker.group, path);
     this.requestDraw();
   }
 
@@ -273,9 +287,12 @@ export class MapView {
     if (this.stale.settings) this.refreshColours(settings);
     this.setUniform('uQuiet', 0);
     if (this.stale.tiles && info) this.tiles.show(this.viewport, info, settings);
-    if (this.stale.path && !this.held) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
+    const pathDue = this.stale.settings || performance.now() >= this.path.restsUntil();
+    if (this.stale.path && pathDue && !this.held) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
+    const pathLater = this.stale.path && !pathDue;
     this.path.setScale(this.viewport.scale);
-    this.stale = { tiles: false, path: false, settings: false };
+    this.stale = { tiles: false, path: pathLater, settings: false };
+    if (pathLater) setTimeout(() => this.requestDraw(), Math.max(16, this.path.restsUntil() - performance.now()));
     const pose = this.live.pose;
     if (pose?.pose && !this.held) {
       this.marker.setState(pose.state);
@@ -297,4 +314,14 @@ export class MapView {
     this.grid.mesh.visible = settings.showGrid;
     this.renderer.setClearColor(new Color(cssColour(colours.unknown).replaceAll(' ', ',')));
   }
+}
+
+function place(group: Group, motion: Motion | undefined): void {
+  group.matrixAutoUpdate = false;
+  group.matrix.identity();
+  if (motion) {
+    const { rotation: [a, b, c], shift: [x, y, z] } = motion;
+    group.matrix.set(...a, x, ...b, y, ...c, z, 0, 0, 0, 1);
+  }
+  group.matrixWorldNeedsUpdate = true;
 }

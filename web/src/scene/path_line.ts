@@ -21,6 +21,8 @@ export class PathLine {
   readonly group = new Group();
   private points: readonly TrajectoryPoint[] = [];
   private spacing = 0.1; // metres
+  private cost = 0; // ms, of the last update
+  private drawnAt = 0;
   private readonly casing = new LineMaterial({ color: '#000000', linewidth: 4.5, transparent: true, opacity: 0.45, depthTest: false });
   private readonly ink = new LineMaterial({ vertexColors: true, linewidth: 2.5, transparent: true, depthTest: false });
   private readonly lines: [Line2, Line2] = [new Line2(new LineGeometry(), this.casing), new Line2(new LineGeometry(), this.ink)];
@@ -37,12 +39,14 @@ export class PathLine {
   }
 
   update(points: readonly TrajectoryPoint[], by: 'time' | 'state'): void {
+    const start = performance.now();
     const step = Math.max(1, Math.ceil(points.length / MAX_POINTS));
     const shown = points.filter((point, i) => point.pose && (i % step === 0 || i === points.length - 1));
     this.group.visible = shown.length > 1;
     if (shown.length < 2) return;
     const positions = shown.flatMap(({ pose }) => (pose ? [pose.x, pose.y, pose.z] : []));
-    const colours = shown.flatMap((point, i) => (by === 'state' ? STATE_COLOURS[point.state] : OLD.clone().lerp(NEW, i / (shown.length - 1))).toArray());
+    const between = new Color();
+    const colours = shown.flatMap((point, i) => (by === 'state' ? STATE_COLOURS[point.state] : between.lerpColors(OLD, NEW, i / (shown.length - 1))).toArray());
     for (const line of this.lines) {
       line.geometry.dispose();
       line.geometry = new LineGeometry();
@@ -51,6 +55,13 @@ export class PathLine {
     }
     this.points = points;
     this.updateDots();
+    this.cost = performance.now() - start;
+    this.drawnAt = start;
+  }
+
+  /** A long path is not built anew with every pose: at most a tenth of the time goes into it. */
+  restsUntil(): number {
+    return this.drawnAt + 10 * this.cost;
   }
 
   /** `scale`: CSS pixels per metre. Dots of mapped views keep their distance, so that the line stays readable. */

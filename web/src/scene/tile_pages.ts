@@ -2,7 +2,7 @@
 // A tile that changed is uploaded alone; nothing is kept twice in memory.
 
 import { Data3DTexture, DataArrayTexture, NearestFilter, RGBAFormat, UnsignedByteType, Vector3, type WebGLRenderer } from 'three';
-import { keyText, TILE_SIDE, type Tile, type TileKey } from '../tile_store';
+import { BYTES_PER_LAYER, keyText, TILE_SIDE, type Tile, type TileKey } from '../tile_store';
 
 const SLOTS_PER_PAGE = 128;
 const MAX_SLICES = 2048; // every WebGL 2 device we know of has as many; the least allowed is 256
@@ -23,6 +23,11 @@ export class TilePages {
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
     const slices = Math.min(MAX_SLICES, gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) as number);
     return Math.max(1, Math.min(SLOTS_PER_PAGE, Math.floor(slices / this.layers)));
+  }
+
+  /** What the textures take on the graphics card, used or not. */
+  get bytes(): number {
+    return this.pages.length * this.slotsPerPage * this.layers * BYTES_PER_LAYER;
   }
 
   slotOf(key: TileKey): Slot | undefined {

@@ -43,6 +43,10 @@ export class TileScene {
     for (const tile of this.live.tiles.all()) this.dirty.set(keyText(tile), tile);
   }
 
+  get textureBytes(): number {
+    return this.pages?.bytes ?? 0;
+  }
+
   change(applied: readonly TileKey[]): void {
     for (const key of applied) {
       const tile = this.live.tiles.get(key);
