@@ -57,6 +57,63 @@ for (const scheme of ['dark', 'light'] as const)
     expect(violations.filter(({ impact }) => impact === 'serious' || impact === 'critical').map(({ id, nodes }) => [id, nodes.map((node) => node.html.slice(0, 120))])).toEqual([]);
   });
 
+/** What axe holds against the page as it is now. */
+async function faults(page: Page, where: string): Promise<unknown[]> {
+  const { violations } = await new AxeBuilder({ page }).analyze();
+  return violations.filter(({ impact }) => impact === 'serious' || impact === 'critical').map(({ id, nodes }) => [where, id, nodes.map((node) => node.html.slice(0, 120))]);
+}
+
+for (const scheme of ['dark', 'light'] as const)
+  test(`axe finds nothing serious in tools, menus, dialogs and sheets, ${scheme}`, async ({ page }) => {
+    await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
+    await openMock(page);
+    await pauseMock(page);
+    await page.locator('.map > canvas').focus();
+    const found: unknown[] = [];
+    for (const [key, name] of [['m', 'measure'], ['r', 'route'], ['t', 'level'], ['v', 'solid'], ['h', 'held']] as const) {
+      await page.keyboard.press(key);
+      found.push(...await faults(page, name));
+    }
+    await page.keyboard.press('Escape');
+    await page.locator('summary[aria-label="Export"]').click();
+    found.push(...await faults(page, 'export'));
+    await page.keyboard.press('Escape');
+    await page.getByRole('button', { name: 'Keys and help' }).click();
+    found.push(...await faults(page, 'help'));
+    await page.getByRole('button', { name: 'Close' }).click();
+    await page.setViewportSize({ width: 390, height: 844 });
+    for (const tab of ['Map', 'Camera', 'Cell', 'Status']) {
+      await page.locator('.tabs').getByRole('button', { name: tab }).click();
+      found.push(...await faults(page, `sheet ${tab}`));
+    }
+    expect(found).toEqual([]);
+  });
+
+test('every control is reached by Tab and has a name', async ({ page }) => {
+  await openMock(page);
+  await pauseMock(page);
+  await page.keyboard.press('t'); // the tool with most controls
+  await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
+  const all = await page.evaluate(() => {
+    const named = (e: Element): boolean => Boolean(e.getAttribute('aria-label') ?? (e.textContent?.trim() || (e as HTMLInputElement).labels?.[0]?.textContent?.trim()));
+    const controls = [...document.querySelectorAll<HTMLElement>('button, input, select, summary, a[href], canvas[tabindex]')]
+      .filter((e) => e.checkVisibility({ checkVisibilityCSS: true }) && e.closest('[hidden]') === null && !(e as HTMLButtonElement).disabled);
+    controls.forEach((e, i) => { e.dataset['reach'] = String(i); });
+    // Of radio buttons one is a stop for Tab, the others are reached by arrows.
+    const stops = controls.filter((e) => (e as HTMLInputElement).type !== 'radio' || (e as HTMLInputElement).checked);
+    return { stops: stops.map((e) => e.dataset['reach']), unnamed: controls.filter((e) => !named(e)).map((e) => e.outerHTML.slice(0, 90)) };
+  });
+  expect(all.unnamed).toEqual([]);
+  const reached = new Set<string | undefined>();
+  for (let i = 0; i < 2 * all.stops.length && reached.size < all.stops.length; ++i) {
+    await page.keyboard.press('Tab');
+    const now = await page.evaluate(() => (document.activeElement as HTMLElement | null)?.dataset['reach']);
+    if (now !== undefined) reached.add(now);
+  }
+  const missed = all.stops.filter((stop) => !reached.has(stop));
+  expect(await page.evaluate((list) => list.map((i) => document.querySelector(`[data-reach="${i}"]`)?.outerHTML.slice(0, 90)), missed)).toEqual([]);
+});
+
 test('keys do what the help says', async ({ page }) => {
   await openMock(page);
   await pauseMock(page);

@@ -64,6 +64,7 @@ const { child, url } = await startDemo(60 * minutes + SETTLES_S + 120);
 const browser = await chromium.launch({ executablePath: process.env.FLOGMAP_CHROMIUM ?? '/usr/bin/chromium', args: ARGS });
 try {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  page.setDefaultTimeout(180_000); // drawn without a graphics card, perhaps beside a compiler
   await page.goto(`${url}/?fresh`);
   await page.locator('.chip', { hasText: /Live|Lagging/ }).waitFor();
   await page.keyboard.press('0');

@@ -1,9 +1,8 @@
 // What the camera sees: left picture with the tracked corners, disparity with its scale, and how old they are.
 
 import type { ImageEvent } from '../decode';
-import { placeOnRamp } from '../floor_samples';
+import { placeOnRamp, RAMP_GRADIENT } from '../disparity_ramp';
 import { ImageStream } from '../gen/flogmap/v1/stream_pb';
-import { cssColour, rampColour } from '../palette';
 import type { Page } from '../page';
 import { h, setText } from '../ui/dom';
 import { lightOf } from '../warnings';
@@ -159,7 +158,7 @@ function depthUnderCursor(page: Page, canvas: HTMLCanvasElement, readout: HTMLEl
 
 function disparityScale(page: Page): HTMLElement {
   const band = h('div', { class: 'ramp' });
-  band.style.background = `linear-gradient(90deg, ${Array.from({ length: 11 }, (_, i) => cssColour(rampColour('viridis', i / 10))).join(', ')})`;
+  band.style.background = RAMP_GRADIENT;
   const low = h('span', {});
   const high = h('span', {});
   const element = h('div', { class: 'disparity-scale', hidden: true }, band, h('div', { class: 'ramp-ends' }, low, high));
