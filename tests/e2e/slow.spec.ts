@@ -4,6 +4,8 @@ import { open, state } from './flog_page';
 import { Program } from './program';
 import { SlowLine } from './slow_line';
 
+test.use({ viewport: { width: 480, height: 360 } }); // two pages are drawn without a graphics card, beside the mapping
+
 const poseS = (page: Page): Promise<number> => page.evaluate(() => (window as never as { __flog: { poseS: number } }).__flog.poseS);
 
 /** How far the newest pose of a page lies behind another's, s, the worst of some looks. */
@@ -17,7 +19,7 @@ async function behind(page: Page, other: Page, looks: number): Promise<number> {
 }
 
 test('a slow viewer lags, says so, gets the newest pose and in the end the whole map; the other one stays live', async ({ page, context }) => {
-  const program = await Program.start('sim:room');
+  const program = await Program.start('sim:room', 0, ['--threads', '1']);
   const line = await SlowLine.to(program.port, 4_000_000);
   try {
     await open(page, `${line.url}/?fresh`);

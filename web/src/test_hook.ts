@@ -10,7 +10,7 @@ export interface TestHook {
   readonly fps: number;
   readonly trajectoryLength: number;
   readonly shownTiles: number;
-  readonly walk: WalkState & { readonly position: readonly number[] };
+  readonly walk: WalkState & { readonly position: readonly number[]; readonly yaw: number };
   tiles(): number;
   /** Of tiles in memory, and of their textures on the graphics card. */
   readonly tileBytes: number;
@@ -37,7 +37,7 @@ export function installTestHook(page: Page): void {
     get fps() { return view.fps; },
     get trajectoryLength() { return live.trajectory.length; },
     get shownTiles() { return view.shown.length; },
-    get walk() { return { ...page.walk.state, position: page.walk.walker.position }; },
+    get walk() { return { ...page.walk.state, position: page.walk.walker.position, yaw: page.walk.walker.yaw }; },
     tiles: () => live.tiles.count,
     get tileBytes() { return live.tiles.bytes; },
     get textureBytes() { return view.textureBytes; },
