@@ -45,17 +45,18 @@ std::optional<Eigen::Vector3d> mean(const std::vector<Acceleration>& samples, do
 }  // namespace
 
 std::optional<Eigen::Vector3d> resting_acceleration(const std::vector<Acceleration>& samples) {
-  constexpr double kFirstS = 0.5, kLongestS = 2.0, kBlockS = 0.1;
+  constexpr double kFirstS = 0.5, kBlockS = 0.1;
+  constexpr int kMostBlocks = 20, kLeastBlocks = 5;
   constexpr double kRestingMs2 = 0.4, kGravityMs2 = 9.81, kGravitySlackMs2 = 0.5;
   const auto first = mean(samples, 0, kFirstS);
   if (!first || samples.back().time_s < kFirstS) return std::nullopt;
-  double rest_until_s = 0;
-  for (; rest_until_s < kLongestS; rest_until_s += kBlockS) {  // block by block: motors shake single samples
-    const auto block = mean(samples, rest_until_s, rest_until_s + kBlockS);
+  int num_blocks = 0;
+  for (; num_blocks < kMostBlocks; ++num_blocks) {  // block by block: motors shake single samples
+    const auto block = mean(samples, kBlockS * num_blocks, kBlockS * (num_blocks + 1));
     if (!block || (*block - *first).norm() > kRestingMs2) break;
   }
-  if (rest_until_s < kFirstS) return std::nullopt;
-  const auto resting = mean(samples, 0, rest_until_s);
+  if (num_blocks < kLeastBlocks) return std::nullopt;
+  const auto resting = mean(samples, 0, kBlockS * num_blocks);
   return std::abs(resting->norm() - kGravityMs2) < kGravitySlackMs2 ? resting : std::nullopt;
 }
 

@@ -52,6 +52,7 @@ class StereoSource {
 
   /// While next() waits for something that may never come, a camera that was unplugged for instance, it calls
   /// `tell` when that begins and when it ends, from its own thread; skipped() then says what it is.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): those who override it keep it.
   virtual void on_trouble(std::function<void()> /*tell*/) {}
 
   /// Nothing where pairs have one time only.

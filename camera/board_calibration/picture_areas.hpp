@@ -19,7 +19,8 @@ using AreaCounts = std::array<int, kNumAreas>;
   const auto third = [](double at, int size) {
     return std::clamp(static_cast<int>(kAreasPerSide * at / size), 0, kAreasPerSide - 1);
   };
-  return static_cast<std::size_t>(kAreasPerSide * third(pixel.y(), height_px) + third(pixel.x(), width_px));
+  const int area = kAreasPerSide * third(pixel.y(), height_px) + third(pixel.x(), width_px);
+  return static_cast<std::size_t>(area);
 }
 
 [[nodiscard]] inline std::string area_name(std::size_t area) {

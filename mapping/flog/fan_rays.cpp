@@ -4,8 +4,8 @@
 #include <barrier>
 #include <utility>
 
-#include "mapping/flog/simd.hpp"
 #include "mapping/flog/threads.hpp"
+#include "mapping/simd.hpp"
 
 namespace flogmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapping/flog/simd.hpp"
+#include "mapping/simd.hpp"
 
 namespace flogmap {
 namespace {

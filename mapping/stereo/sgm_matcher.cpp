@@ -9,6 +9,7 @@
 #include "mapping/stereo/census.hpp"
 #include "mapping/stereo/median.hpp"
 #include "mapping/stereo/parallel.hpp"
+#include "mapping/stereo/subpixel.hpp"
 #include "mapping/stereo/winners.hpp"
 
 namespace flogmap {
@@ -72,6 +73,7 @@ class SgmMatcher : public DisparityMatcher {
         kernels_(kernels),
         jump_(jump_by_brightness_step()),
         padding_(kernels.stride, 0),
+        subpixel_(static_cast<float>(options.min_disparity), num_threads_),
         workspaces_(num_threads_) {
     std::fill(padding_.begin() + rule_.num_disparities, padding_.end(), std::uint8_t{0xFF});
   }
@@ -85,6 +87,7 @@ class SgmMatcher : public DisparityMatcher {
       match_band(pair.left, bands[i], workspaces_[worker], disparity.px);
     });
     median_3x3(disparity, num_threads_);
+    subpixel_.refine(disparity, pair);
     return disparity;
   }
 
@@ -173,6 +176,7 @@ class SgmMatcher : public DisparityMatcher {
   std::array<std::uint8_t, 256> jump_;
   std::vector<std::uint8_t> padding_;
   CensusPair census_;
+  SubpixelFit subpixel_;
   std::vector<Workspace> workspaces_;
 };
 
