@@ -11,6 +11,7 @@ namespace {
 constexpr int kMaxRounds = 3;       // of finding landmarks and solving for the pose again
 constexpr double kJustAlike = 0.3;  // mean difference of two patches of the same thing, see there
 constexpr double kNearestZ_m = 0.05;
+constexpr double kSamePose_px = 1;      // poses solved from two key frames' hypotheses agree that well
 constexpr double kBehind_px = 1000;     // as far as a landmark behind the camera counts
 constexpr std::int64_t kLastPose = -1;  // a hypothesis of no key frame
 
@@ -31,7 +32,6 @@ class Placing {
 
   /// `source` tells hypotheses apart that are independent of one another: the key frame's id.
   bool try_pose(SE3 odometry_from_camera, std::int64_t source) {
-    if (confirmed_by(odometry_from_camera, source)) return true;
     int last_inliers = 0;
     for (int round = 0; round < kMaxRounds; ++round) {
       auto placement = test(odometry_from_camera);
@@ -66,11 +66,11 @@ class Placing {
            (best_.num_inliers >= options_.convincing_inliers && best_.share() >= options_.convincing_share);
   }
 
-  /// Two key frames that ask for the same pose are right: what moved by itself between them would ask for
-  /// two.
+  /// Two key frames that lead to the same pose are right: what moved by itself between them would lead to
+  /// two. Hypotheses alone say little: one that turns too much and shifts too little may lie a few pixels off.
   [[nodiscard]] bool confirmed_by(const SE3& odometry_from_camera, std::int64_t source) const {
     return source != best_source_ && best_.num_inliers >= options_.convincing_inliers &&
-           distance_px(odometry_from_camera, best_) <= options_.search_radius_px;
+           distance_px(odometry_from_camera, best_) <= kSamePose_px;
   }
 
   /// For the reason, should there be no pose.

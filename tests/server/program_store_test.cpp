@@ -95,7 +95,11 @@ void limit_files_of(const RunningProgram& program, rlim_t bytes) {
   ASSERT_EQ(::prlimit(program.pid(), RLIMIT_FSIZE, &limit, nullptr), 0);
 }
 
-/// What /readyz says of the store; empty if nothing.
+bool is_ready(const RunningProgram& program) {
+  return json::parse(http(program.port(), "GET", "/readyz").body)["ready"] == true;
+}
+
+/// What /readyz says of the store; empty if nothing. Only for a program that is ready.
 std::string warning_of(const RunningProgram& program, const std::filesystem::path& store) {
   const json ready = json::parse(http(program.port(), "GET", "/readyz").body);
   EXPECT_EQ(ready["ready"], true);
@@ -164,6 +168,7 @@ TEST(ProgramStore, ADiskThatIsFullRightAfterAKillKeepsNobodyFromMapping) {
     const FileLimit no_room(40'000);  // of the journal's index alone there is enough
     program = std::make_unique<RunningProgram>(arguments);
   }
+  ASSERT_TRUE(wait_until([&] { return is_ready(*program); }));
   ASSERT_TRUE(wait_until([&] { return !warning_of(*program, store).empty(); }));
   EXPECT_THAT(warning_of(*program, store), HasSubstr("mapping goes on"));
   const std::uint64_t then = revision_of(*program);
