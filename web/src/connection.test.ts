@@ -101,6 +101,19 @@ describe('connection', () => {
     expect(connection.state.phase).toBe('live');
   });
 
+  it('is live once more tiles came than were announced, however fast the map changes', () => {
+    connection.start();
+    socket().onopen?.(new Event('open'));
+    hear(welcome('a'));
+    hear(begin(4));
+    hear(tiles(3n, false, 4));
+    expect(connection.state).toEqual({ phase: 'resuming', done: 4, total: 4 }); // all of them, but the server may add the end at once
+    hear(tiles(4n, false, 1));
+    expect(connection.state.phase).toBe('live');
+    hear(tiles(5n, false, 1));
+    expect(connection.state.phase).toBe('live');
+  });
+
   it('acknowledges every tile batch with the sum of bytes', () => {
     connection.start();
     socket().onopen?.(new Event('open'));

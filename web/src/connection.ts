@@ -158,7 +158,10 @@ export class Connection {
       if (event.complete) this.completeRev = event.rev;
       this.snapshot.done += event.tiles.length;
       for (const tile of event.tiles) this.forgotten.delete(keyText(tile));
-      if (this.current.phase === 'resuming') this.enter({ phase: 'resuming', ...this.snapshot });
+      if (this.current.phase !== 'resuming') return;
+      // More than was announced: what comes now are changes, even if they come too fast for the server ever to say "complete".
+      const changes = this.snapshot.total > 0 && this.snapshot.done > this.snapshot.total;
+      this.enter(changes ? { phase: 'live', lagMs: this.ping.roundTrip } : { phase: 'resuming', ...this.snapshot });
       return;
     }
     if (event.kind !== 'message') return;
