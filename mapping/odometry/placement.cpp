@@ -67,7 +67,8 @@ class Placing {
   }
 
   /// Two key frames that lead to the same pose are right: what moved by itself between them would lead to
-  /// two. Hypotheses alone say little: one that turns too much and shifts too little may lie a few pixels off.
+  /// two. Hypotheses alone say little: one that turns too much and shifts too little may lie a few pixels
+  /// off.
   [[nodiscard]] bool confirmed_by(const SE3& odometry_from_camera, std::int64_t source) const {
     return source != best_source_ && best_.num_inliers >= options_.convincing_inliers &&
            distance_px(odometry_from_camera, best_) <= kSamePose_px;

@@ -34,8 +34,7 @@ inline void keep_to_no_core() {
 /// All threads of a running flogmap: the first, which serves, keeps to the network's core, the others to the
 /// mapping's.
 inline void keep_program_to_cores(pid_t program) {
-  for (const auto& task :
-       std::filesystem::directory_iterator("/proc/" + std::to_string(program) + "/task")) {
+  for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(program) + "/task")) {
     const pid_t thread = std::stoi(task.path().filename().string());
     keep_to_core(thread, thread == program ? kNetworkCore : kMappingCore);
   }
