@@ -69,6 +69,8 @@ test('the live map is the map that the headless run writes', async () => {
   try {
     execFileSync(PROGRAM, ['map', '--source', `euroc:${RECORDING}`, '--out', path.join(out, 'map')], { stdio: 'pipe' });
     await expect.poll(async () => (await program.json<{ state: string }>('session')).state, { timeout: 120_000 }).toBe('finished');
+    // What has been read is finished; the last frames are tracked a moment later.
+    await expect.poll(async () => (await program.json<{ tracked: number }>('session')).tracked, { timeout: 20_000 }).toBe(110);
     expect(await (await fetch(`${program.url}/api/v1/maps/live/trajectory?format=tum`)).text()).toBe(execFileSync('cat', [path.join(out, 'map/trajectory.tum')]).toString());
   } finally {
     await program.end();
