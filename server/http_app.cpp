@@ -16,8 +16,8 @@ using std::chrono::steady_clock;
 constexpr std::size_t kMaxWaitingQueries = 16;
 constexpr std::string_view kLogin = "/api/v1/login";
 constexpr std::string_view kLogout = "/api/v1/logout";
-constexpr std::string_view kStream =
-    "/api/v1/stream";  // HttpSession opens it; nothing else can be done there
+/// HttpSession opens it; nothing else can be done there.
+constexpr std::string_view kStream = "/api/v1/stream";
 
 /// What no request should be able to bring about.
 ApiResponse fault(const std::string& path, const std::exception& error) {

@@ -5,8 +5,8 @@ find_package(nlohmann_json REQUIRED)
 flogmap_target(options SOURCES option_table.cpp options.cpp
                PUBLIC front_end flog camera log nlohmann_json::nlohmann_json PRIVATE CLI11::CLI11)
 
-flogmap_target(pipeline SOURCES capture_control.cpp loop_stage.cpp map_stage.cpp pipeline.cpp random_epoch.cpp
-                       stage_statistics.cpp
+flogmap_target(pipeline SOURCES capture_control.cpp loop_stage.cpp map_stage.cpp pipeline.cpp pipeline_capture.cpp
+                       random_epoch.cpp stage_statistics.cpp
                PUBLIC front_end map_builder loop flog camera Threads::Threads)
 
 flogmap_target(live_desk SOURCES commands/live_desk.cpp PUBLIC board_calibration PRIVATE nlohmann_json::nlohmann_json)

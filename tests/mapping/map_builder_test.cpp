@@ -5,6 +5,7 @@
 #include <random>
 
 #include "mapping/loop/view_store.hpp"
+#include "tests/support/same_cells.hpp"
 
 namespace flogmap {
 namespace {
@@ -75,22 +76,6 @@ MapSnapshot from_scratch(std::vector<View> views, const PathCorrection& correcti
     map.integrate(view);
   }
   return map.snapshot();
-}
-
-/// The same cells; a tile that one lacks must be unseen in the other.
-void expect_same_cells(const MapSnapshot& a, const MapSnapshot& b) {
-  const auto differing = [](const MapSnapshot& from, const MapSnapshot& to) {
-    int count = 0;
-    for (const auto& [index, tile] : from.tiles) {
-      const auto other = to.tiles.find(index);
-      const TileCells unseen(tile->cells.size());
-      count += tile->cells == (other == to.tiles.end() ? unseen : other->second->cells) ? 0 : 1;
-    }
-    return count;
-  };
-  EXPECT_FALSE(a.tiles.empty());
-  EXPECT_EQ(differing(a, b), 0);
-  EXPECT_EQ(differing(b, a), 0);
 }
 
 /// What a viewer holds who applies every update.

@@ -5,6 +5,7 @@ import type { MapInfo, TrajectoryPoint } from './gen/flogmap/v1/map_pb';
 import type { CameraModel, CellColumn, Features, ImageStream, Playback, Pose, Status } from './gen/flogmap/v1/stream_pb';
 import { Signal } from './signal';
 import { TileStore, type TileKey } from './tile_store';
+import type { Rect } from './viewport';
 import type { Light } from './warnings';
 
 export interface Notice {
@@ -41,6 +42,11 @@ export class LiveMap {
   readonly noticed = new Signal<Notice>();
 
   constructor(readonly tiles: TileStore) {}
+
+  /** What the map covers, metres; nothing before there is a tile. */
+  get bounds(): Rect | undefined {
+    return this.info ? this.tiles.bounds(this.info.cellSize) : undefined;
+  }
 
   take(event: StreamEvent): void {
     if (event.kind === 'tiles') this.takeTiles(event);

@@ -108,7 +108,7 @@ view.moved.on(() => {
 focus.watch(['heldSince'], ({ heldSince }) => view.hold(heldSince > 0));
 
 live.tilesChanged.on(() => {
-  const evicted = live.tiles.evict(new Set(view.shown.map(keyText)));
+  const evicted = live.tiles.evict(new Set(view.tiles.shown.map(keyText)));
   view.release(evicted);
   connection.forget(evicted);
 });

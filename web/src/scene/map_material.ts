@@ -32,7 +32,7 @@ const put = (uniform: { value: unknown } | undefined, rgb: Rgb): void => {
   (uniform?.value as Color).setRGB(rgb[0] / 255, rgb[1] / 255, rgb[2] / 255, '');
 };
 
-const set = (uniforms: MapUniforms, name: string, value: unknown): void => {
+export const setUniform = (uniforms: MapUniforms, name: string, value: unknown): void => {
   const uniform = uniforms[name];
   if (uniform) uniform.value = value;
 };
@@ -40,16 +40,16 @@ const set = (uniforms: MapUniforms, name: string, value: unknown): void => {
 /** Writes the person's choices and the map's constants into the uniforms. */
 export function applySettings(uniforms: MapUniforms, settings: Settings, theme: Theme, info: MapInfo | null): void {
   const layers = info?.layers.slice(0, MAX_LAYERS) ?? [];
-  set(uniforms, 'uStyle', STYLES.indexOf(settings.style));
-  set(uniforms, 'uOperators', OPERATORS.indexOf(settings.operators));
-  set(uniforms, 'uLayers', layers.length);
-  set(uniforms, 'uThreshold', settings.threshold);
-  set(uniforms, 'uClasses', settings.classes);
-  set(uniforms, 'uByHeight', settings.colourByHeight);
-  set(uniforms, 'uMarkConflict', settings.markConflict);
+  setUniform(uniforms, 'uStyle', STYLES.indexOf(settings.style));
+  setUniform(uniforms, 'uOperators', OPERATORS.indexOf(settings.operators));
+  setUniform(uniforms, 'uLayers', layers.length);
+  setUniform(uniforms, 'uThreshold', settings.threshold);
+  setUniform(uniforms, 'uClasses', settings.classes);
+  setUniform(uniforms, 'uByHeight', settings.colourByHeight);
+  setUniform(uniforms, 'uMarkConflict', settings.markConflict);
   const padded = (values: number[]): number[] => [...values, ...floats()].slice(0, MAX_LAYERS);
-  set(uniforms, 'uWeights', padded(layers.map(({ id }) => (layerSetting(settings, id).visible ? layerSetting(settings, id).opacity : 0))));
-  set(uniforms, 'uSeenFrom', padded(layers.map((layer) => seenFromConfidence(info?.minRays ?? 8, layer.fullConfidenceRays))));
+  setUniform(uniforms, 'uWeights', padded(layers.map(({ id }) => (layerSetting(settings, id).visible ? layerSetting(settings, id).opacity : 0))));
+  setUniform(uniforms, 'uSeenFrom', padded(layers.map((layer) => seenFromConfidence(info?.minRays ?? 8, layer.fullConfidenceRays))));
   layers.forEach((_, i) => {
     const colours = uniforms['uLayerColours']?.value as Color[];
     put({ value: colours[i] }, layerColour(i, layers.length, theme));

@@ -1,6 +1,6 @@
 // The map on screen. Holds the viewport, draws at most once per animation frame and only when something changed.
 
-import { Color, Mesh, Scene, WebGLRenderer, type Group } from 'three';
+import { Color, Mesh, Scene, WebGLRenderer } from 'three';
 import { heading } from '../geometry';
 import { ImageStream } from '../gen/flogmap/v1/stream_pb';
 import type { Reach } from '../backend';
@@ -9,13 +9,14 @@ import type { LiveMap } from '../live_map';
 import { classColours, cssColour, type Theme } from '../palette';
 import type { Settings } from '../settings';
 import { Signal, type Store } from '../signal';
-import type { Tile, TileKey } from '../tile_store';
-import { fit, pan, pixelsApart, towards, wrapAngle, zoomAt, type Point, type Rect, type Viewport } from '../viewport';
+import type { TileKey } from '../tile_store';
+import { fit, pan, pixelsApart, towards, wrapAngle, zoomAt, type Point, type Viewport } from '../viewport';
 import { CameraMarker } from './camera_marker';
 import { FramePacer } from './frame_pacer';
 import { GridLines } from './grid_lines';
-import { applySettings, groundMaterial, mapUniforms, type MapUniforms } from './map_material';
+import { applySettings, groundMaterial, mapUniforms, setUniform, type MapUniforms } from './map_material';
 import { PathLine } from './path_line';
+import { place } from './place_group';
 import { ReachLayer } from './reach_layer';
 import { unitQuad } from './tile_meshes';
 import { TileScene } from './tile_scene';
@@ -35,6 +36,7 @@ export class MapView {
   /** The part of the world that is shown has changed. */
   readonly moved = new Signal<Viewport>();
   readonly canvas: HTMLCanvasElement;
+  readonly tiles: TileScene;
 
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
@@ -43,7 +45,6 @@ export class MapView {
   private readonly marker = new CameraMarker();
   private readonly grid = new GridLines();
   private readonly reach = new ReachLayer();
-  private readonly tiles: TileScene;
   private readonly ground = new Mesh(unitQuad(), groundMaterial(this.uniforms));
   private walkthrough: Walkthrough | null = null;
   private readonly pacer = new FramePacer((now) => this.draw(now));
@@ -66,16 +67,6 @@ export class MapView {
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
     this.listen();
-  }
-
-  /** The tiles on screen. */
-  get shown(): readonly Tile[] {
-    return this.tiles.shown;
-  }
-
-  /** Of the tiles, on the graphics card. */
-  get textureBytes(): number {
-    return this.tiles.textureBytes;
   }
 
   setTheme(theme: Theme): void {
@@ -145,7 +136,7 @@ export class MapView {
 
   /** Shows the whole map. */
   fitMap(): void {
-    const rect = this.mapRect();
+    const rect = this.live.bounds;
     this.touchedByUser = false;
     if (rect) this.glideTo(fit({ ...this.viewport, turn: 0 }, rect, FIT_MARGIN_PX));
   }
@@ -202,7 +193,7 @@ export class MapView {
   private changeTiles(applied: readonly TileKey[], removed: readonly TileKey[]): void {
     this.tiles.change(applied);
     this.release(removed);
-    const rect = this.held || this.touchedByUser || this.settings.get().follow !== 'free' ? undefined : this.mapRect();
+    const rect = this.held || this.touchedByUser || this.settings.get().follow !== 'free' ? undefined : this.live.bounds;
     if (rect) this.glideTo(fit(this.viewport, rect, FIT_MARGIN_PX));
     if (!this.held) this.mark('tiles'); // a new overview tile must not hide what stands in for it
   }
@@ -211,10 +202,6 @@ export class MapView {
   release(keys: readonly TileKey[]): void {
     this.tiles.release(keys);
     this.stale.tiles = true;
-  }
-
-  private mapRect(): Rect | undefined {
-    return this.live.info ? this.live.tiles.bounds(this.live.info.cellSize) : undefined;
   }
 
   private follow(): void {
@@ -263,7 +250,7 @@ export class MapView {
     const [x, y] = walk.walker.position;
     const settings = this.settings.get();
     if (this.stale.settings) this.refreshColours(settings);
-    this.setUniform('uQuiet', 1); // the floor keeps in the background
+    setUniform(this.uniforms, 'uQuiet', 1); // the floor keeps in the background
     this.grid.mesh.visible = false;
     if (this.live.info) this.tiles.show({ ...this.viewport, x, y, turn: 0, scale: WALK_SCALE }, this.live.info, { ...settings, solid: false }, walk.floor);
     this.stale.settings = false;
@@ -285,7 +272,7 @@ export class MapView {
     const settings = this.settings.get();
     const { info } = this.live;
     if (this.stale.settings) this.refreshColours(settings);
-    this.setUniform('uQuiet', 0);
+    setUniform(this.uniforms, 'uQuiet', 0);
     if (this.stale.tiles && info) this.tiles.show(this.viewport, info, settings);
     const pathDue = this.stale.settings || performance.now() >= this.path.restsUntil();
     if (this.stale.path && pathDue && !this.held) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
@@ -300,28 +287,13 @@ export class MapView {
     }
   }
 
-  private setUniform(name: string, value: number): void {
-    const uniform = this.uniforms[name];
-    if (uniform) uniform.value = value;
-  }
-
   private refreshColours(settings: Settings): void {
     applySettings(this.uniforms, settings, this.theme, this.live.info);
-    this.setUniform('uPixelRatio', this.renderer.getPixelRatio());
+    setUniform(this.uniforms, 'uPixelRatio', this.renderer.getPixelRatio());
     const colours = classColours(settings.palette, this.theme);
     const [r, g, b] = colours.free;
     this.grid.setInk(0.3 * r + 0.6 * g + 0.1 * b < 128);
     this.grid.mesh.visible = settings.showGrid;
     this.renderer.setClearColor(new Color(cssColour(colours.unknown).replaceAll(' ', ',')));
   }
-}
-
-function place(group: Group, motion: Motion | undefined): void {
-  group.matrixAutoUpdate = false;
-  group.matrix.identity();
-  if (motion) {
-    const { rotation: [a, b, c], shift: [x, y, z] } = motion;
-    group.matrix.set(...a, x, ...b, y, ...c, z, 0, 0, 0, 1);
-  }
-  group.matrixWorldNeedsUpdate = true;
 }
