@@ -1,5 +1,6 @@
 #include "mapping/odometry/lost_reasons.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flogmap {
