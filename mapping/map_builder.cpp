@@ -54,7 +54,6 @@ std::vector<TileUpdate> MapBuilder::catch_up() {
   }
   if (rebuild_->next < views_.size()) return {};
   built_with_ = rebuild_->with;
-  built_level_ = rebuild_->correction.level();
   const Rebuild done = *std::exchange(rebuild_, std::nullopt);
   return map_.replace_by(done.map.snapshot());
 }
@@ -83,7 +82,6 @@ void MapBuilder::reset() {
   frozen_holds_ = false;
   views_.clear();
   correction_ = {};
-  built_level_ = {};
   built_with_ = corrected_times_;
   num_waiting_ = 0;
   rebuild_.reset();

@@ -40,9 +40,6 @@ class MapBuilder {
   /// Every view of the map is still kept, so that it can be levelled as a whole.
   [[nodiscard]] bool is_whole() const { return options_.keep_views && !frozen_holds_; }
 
-  /// How the map is levelled that map() now is.
-  [[nodiscard]] const HandLevel& level() const { return built_level_; }
-
   /// Builds a map aside, one view at a time; the tiles that differ once it is complete and in place.
   std::vector<TileUpdate> catch_up();
 
@@ -74,7 +71,6 @@ class MapBuilder {
   PathCorrection correction_;
   std::uint64_t corrected_times_ = 0;
   std::uint64_t built_with_ = 0;
-  HandLevel built_level_;
   std::size_t num_waiting_ = 0;
   std::optional<Rebuild> rebuild_;
 };

@@ -35,6 +35,11 @@ ApiResponse too_many_attempts() {
 
 bool changes_something(Method method) { return method == Method::post || method == Method::patch; }
 
+/// Maps and commands; what the program is and how it does can be asked to its end.
+bool needs_the_mapping(const ApiRequest& request) {
+  return request.path.starts_with("/api/v1/maps") || changes_something(request.method);
+}
+
 /// The secret of a login: JSON {"token": ...} or a form's token=...
 std::string secret_of(const ApiRequest& request) {
   if (request.content_type.starts_with("application/x-www-form-urlencoded")) {
@@ -85,13 +90,10 @@ std::optional<ApiResponse> HttpApp::refuse_guesses(const ApiRequest& request) {
   return std::nullopt;
 }
 
-std::optional<ApiResponse> HttpApp::refuse_stream(const ApiRequest& request, bool offers_protocol) {
+std::optional<ApiResponse> HttpApp::refuse_stream(const ApiRequest& request) {
   if (auto refused = refuse(request)) return refused;
   if (auto refused = refuse_guesses(request)) return refused;
   if (request.role == Role::none) return problem(401, "token-needed", "log in first, or send a token");
-  if (!offers_protocol) {
-    return problem(400, "no-common-protocol", "offer flogmap.v1.proto", "Sec-WebSocket-Protocol");
-  }
   if (state_.draining) return problem(503, "draining", "shutting down");
   if (!state_.live) return problem(503, "starting", "the map has not begun yet");
   return std::nullopt;
@@ -123,6 +125,7 @@ ApiAnswer HttpApp::dispatch(ApiRequest& request) {
   if (auto refused = refuse_guesses(request)) return *refused;
   if (request.path == kLogin || request.path == kLogout) return log_in(request);
   if (request.path == kStream) return only_allowed(request, "GET");
+  if (state_.draining && needs_the_mapping(request)) return problem(503, "draining", "shutting down");
   const bool reads = request.method == Method::get || request.method == Method::head;
   if (request.path == "/" || web_.holds(request.path)) {
     return reads ? web_.answer(request) : only_allowed(request, "GET, HEAD");

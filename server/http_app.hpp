@@ -26,7 +26,7 @@ class HttpApp {
   void answer(ApiRequest& request, Done done);
 
   /// The checks before a WebSocket is opened: nothing if it may be.
-  std::optional<ApiResponse> refuse_stream(const ApiRequest& request, bool offers_protocol);
+  std::optional<ApiResponse> refuse_stream(const ApiRequest& request);
 
   /// Ends the query thread; later queries are answered 503.
   void stop() { queries_.stop(); }

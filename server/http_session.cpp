@@ -187,15 +187,16 @@ template <typename Stream>
 void HttpSession<Stream>::open_stream() {
   const auto& message = parser_->get();
   context_.app.identify(request_);
+  if (auto refused = context_.app.refuse_stream(request_)) return respond(std::move(*refused), false);
   if (!opens_websocket(message)) {
     ApiResponse response = problem(400, "upgrade-needed", "open this with a WebSocket of version 13");
     response.headers.emplace_back("Sec-WebSocket-Version", "13");
     return respond(std::move(response), false);
   }
   http::token_list offered(message[http::field::sec_websocket_protocol]);
-  const bool offers_protocol = offered.exists({kStreamProtocol.data(), kStreamProtocol.size()});
-  if (auto refused = context_.app.refuse_stream(request_, offers_protocol)) {
-    return respond(std::move(*refused), false);
+  if (!offered.exists({kStreamProtocol.data(), kStreamProtocol.size()})) {
+    return respond(
+        problem(400, "no-common-protocol", "offer flogmap.v1.proto", "Sec-WebSocket-Protocol"), false);
   }
   beast::get_lowest_layer(stream_).expires_never();  // from here on the stream has its own deadlines
   std::make_shared<WsSession<Stream>>(std::move(stream_), context_, std::move(peer_), request_.role)

@@ -94,6 +94,7 @@ ApiResponse problem(int status, std::string_view code, std::string_view detail, 
   response.content_type = "application/problem+json";
   // Input that is not UTF-8 may stand in the detail.
   response.body = to_shared(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (status == 401) response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"flogmap\"");
   if (status == 429 || status == 503) response.headers.emplace_back("Retry-After", "1");
   return response;
 }

@@ -28,9 +28,10 @@ void MapStage::integrate(View view) {
   items_.push(std::move(item));
 }
 
-void MapStage::correct(PathCorrection correction) {
+void MapStage::correct(PathCorrection correction, std::uint64_t number) {
   Item item;
   item.correction = std::move(correction);
+  item.number = number;
   items_.push(std::move(item));
 }
 
@@ -63,6 +64,7 @@ void MapStage::take_in(Item& item) {
     item.begun->set_value();
   } else if (item.correction) {
     builder_.correct(*std::move(item.correction));
+    newest_number_ = item.number;
   } else {
     take_in(*item.view);
   }
@@ -83,16 +85,13 @@ void MapStage::begin_now(MapBegin& map) {
   if (std::exchange(begun_, true)) builder_.reset();
   map.info = builder_.map().info();
   map.revision = builder_.map().revision();
-  told_level_ = map.level;
   observer_.map_begins(map);
 }
 
 void MapStage::catch_up() {
   const std::vector<TileUpdate> updates = builder_.catch_up();
   if (!updates.empty()) observer_.map_changed(builder_.map().revision(), updates);
-  if (builder_.is_behind() || builder_.level() == told_level_) return;
-  told_level_ = builder_.level();
-  observer_.map_levelled(told_level_);
+  if (!builder_.is_behind()) observer_.map_caught_up(newest_number_);
 }
 
 std::string MapStage::why_not_levelled() const {

@@ -25,7 +25,8 @@ class MapStage {
            std::function<bool()> ending);
 
   void integrate(View view);
-  void correct(PathCorrection correction);
+  /// `number`: of the rewritten path, told again by map_caught_up().
+  void correct(PathCorrection correction, std::uint64_t number);
 
   /// Another map begins, the first one with what the builder holds. Returns when it has begun, so that no
   /// pose of it comes too early and no tile of the one before too late. Info and revision of `map` are filled
@@ -50,6 +51,7 @@ class MapStage {
   struct Item {
     std::optional<View> view;  // as odometry has it; or ...
     std::optional<PathCorrection> correction;
+    std::uint64_t number = 0;  // of the correction
     std::optional<MapBegin> begin;  // ... begin this map, then open `begun`
     std::shared_ptr<std::promise<void>> begun;
   };
@@ -69,7 +71,7 @@ class MapStage {
   BoundedQueue<Item> items_;
   std::atomic<std::uint64_t> num_waiting_ = 0;
   std::atomic<bool> whole_;
-  HandLevel told_level_;
+  std::uint64_t newest_number_ = 0;
 };
 
 }  // namespace flogmap

@@ -17,6 +17,7 @@ flogmap_target(map_store
     store/map_schema.cpp
     store/map_tables.cpp
     store/sqlite.cpp
+    store/store_file.cpp
     store/store_writer.cpp
     store/tile_blob.cpp
   PUBLIC mapping_data flog

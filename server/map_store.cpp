@@ -3,50 +3,60 @@
 #include <stdexcept>
 #include <utility>
 
-#include "server/store/file_lock.hpp"
 #include "server/store/map_meta.hpp"
 #include "server/store/map_reader.hpp"
-#include "server/store/map_schema.hpp"
 #include "server/store/map_tables.hpp"
 #include "server/store/sqlite.hpp"
+#include "server/store/store_file.hpp"
 
 namespace flogmap {
-namespace {
-
-SqliteDatabase open_for_writing(const std::filesystem::path& path) {
-  SqliteDatabase database(path, SqliteDatabase::Mode::write);
-  if (is_blank(database)) create_map_schema(database);
-  check_map_schema(database);
-  // WAL: readers and the writer do not wait for one another. FULL: a commit outlives a power cut; one sync
-  // a second is cheap. The limit gives the space of a burst back.
-  database.execute(
-      "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA journal_size_limit = 16777216");
-  return database;
-}
-
-}  // namespace
 
 struct MapStore::State {
-  explicit State(std::filesystem::path file)
-      : path(std::move(file)), lock(path), database(open_for_writing(path)) {
-    if (!has_header(database)) return;
-    const StoredMap header = read_header(database);
-    epoch = header.epoch;
-    grid = header.info.grid;
-    committed = read_seal(database);
-    ended_cleanly = committed.clean;
+  explicit State(std::filesystem::path path) : file(std::move(path)) {
+    if (!has_header(file.database())) return;
+    const StoredMap header = read_header(file.database());
+    epoch = committed_epoch = header.epoch;
+    grid = committed_grid = header.info.grid;
+    committed = read_seal(file.database());
+    mark_as_written();
+  }
+
+  /// So that the next start can tell, should this one be killed. After a kill it stands there already; where
+  /// there is no room for it, this start is to be taken for one after a kill.
+  void mark_as_written() {
+    ended_cleanly = std::exchange(committed.clean, false);
     tables.resume(committed, grid.num_layers());
-    if (!ended_cleanly) return;  // it says so already; after a kill there may be no room to say it again
-    tables.set_clean(false);
-    commit();
+    if (!ended_cleanly) return;
+    try {
+      commit();
+    } catch (const SqliteError&) {
+      rollback();
+      ended_cleanly = false;
+    }
+  }
+
+  /// Of a disk that refused before, what is there may have been changed by somebody else meanwhile.
+  void make_writable() {
+    if (!file.writable()) {
+      file.make_writable();
+      unchecked = !epoch.empty();
+    }
+    if (!unchecked) return;
+    MapSeal found = read_seal(file.database());
+    found.clean = committed.clean;
+    unchecked = read_header(file.database()).epoch != committed_epoch || found != committed;
+    if (!unchecked) return;
+    throw std::runtime_error(file.path().string() +
+                             ": was written by another program meanwhile; start again, or name another file");
   }
 
   void ensure_transaction() {
-    if (!database.in_transaction()) database.execute("BEGIN IMMEDIATE");
+    make_writable();
+    if (!file.database().in_transaction()) file.database().execute("BEGIN IMMEDIATE");
   }
 
   MapTables& writable() {
-    if (epoch.empty()) throw std::logic_error(path.string() + ": begin() a map before adding to it");
+    if (epoch.empty()) throw std::logic_error(file.path().string() + ": begin() a map before adding to it");
     ensure_transaction();
     return tables;
   }
@@ -55,14 +65,14 @@ struct MapStore::State {
     if (epoch.empty()) return;
     ensure_transaction();
     tables.write_seal();
-    database.execute("COMMIT");
+    file.database().execute("COMMIT");
     committed = tables.seal();
     committed_epoch = epoch;
     committed_grid = grid;
   }
 
   void rollback() {
-    if (database.in_transaction()) database.execute("ROLLBACK");
+    if (file.database().in_transaction()) file.database().execute("ROLLBACK");
     epoch = committed_epoch;
     grid = committed_grid;
     if (!epoch.empty()) tables.resume(committed, grid.num_layers());
@@ -72,23 +82,22 @@ struct MapStore::State {
   void close() {
     try {
       rollback();
-      if (epoch.empty()) return;
+      if (epoch.empty() || !file.writable()) return;
       tables.set_clean(true);
       commit();
-      database.execute("PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE");
+      file.database().execute("PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE");
     } catch (const SqliteError&) {
       return;
     }
   }
 
-  std::filesystem::path path;
-  FileLock lock;  // taken before the database is opened, given back after it is closed
-  SqliteDatabase database;
-  MapTables tables{database};
+  StoreFile file;
+  MapTables tables{file.database()};
   std::string epoch, committed_epoch;  // empty: no map was begun
   GridSpec grid, committed_grid;
   MapSeal committed;
   bool ended_cleanly = true;
+  bool unchecked = false;  // could only be read at first: may be another's by now
 };
 
 MapStore::MapStore(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {}
@@ -99,15 +108,15 @@ MapStore::~MapStore() {
 }
 
 std::optional<StoredMap> MapStore::load() const {
-  if (!has_header(state_->database)) return std::nullopt;
-  return read_map(state_->database);
+  if (!has_header(state_->file.database())) return std::nullopt;
+  return read_map(state_->file.database());
 }
 
 bool MapStore::ended_cleanly() const { return state_->ended_cleanly; }
 
 void MapStore::begin(const StoredMap& map) {
   check_header(map);
-  if (map.epoch == state_->epoch) check_same_grid(state_->path, state_->grid, map.info.grid);
+  if (map.epoch == state_->epoch) check_same_grid(state_->file.path(), state_->grid, map.info.grid);
   state_->ensure_transaction();
   if (map.epoch == state_->epoch) {
     state_->tables.carry_on(map);
@@ -131,19 +140,21 @@ void MapStore::rewrite_trajectory(std::span<const TrajectoryEntry> entries) {
 
 void MapStore::put_level(const HandLevel& level) { state_->writable().put_level(level); }
 
+void MapStore::set_behind(bool behind) { state_->writable().set_behind(behind); }
+
 void MapStore::put_view(const StoredView& view) { state_->writable().put_view(view); }
 
 std::optional<StoredView> MapStore::view(std::int64_t number) const {
-  return read_view(state_->database, number);
+  return read_view(state_->file.database(), number);
 }
 
-std::vector<std::int64_t> MapStore::view_numbers() const { return read_view_numbers(state_->database); }
+std::vector<std::int64_t> MapStore::view_numbers() const { return read_view_numbers(state_->file.database()); }
 
 void MapStore::commit() { state_->commit(); }
 void MapStore::rollback() { state_->rollback(); }
 std::uint64_t MapStore::revision() const {
   return state_->epoch.empty() ? 0 : state_->tables.seal().revision;
 }
-const std::filesystem::path& MapStore::path() const { return state_->path; }
+const std::filesystem::path& MapStore::path() const { return state_->file.path(); }
 
 }  // namespace flogmap

@@ -28,6 +28,9 @@ struct StoredMap {
   std::string calibration_json = "{}";
   std::vector<SharedView> views;  // in order of number
   HandLevel level;                // by hand, since the automatic start
+  /// The path was corrected and its writer ended before the tiles were built anew for it: they are those of
+  /// the path before.
+  bool behind = false;
 };
 
 /// The whole map of a file, checked to the last byte before anything is returned; nothing is written to it.
@@ -51,7 +54,9 @@ MapSnapshot snapshot_of(const StoredMap& map);
 /// naming the file; after a throw, call rollback(), and the store goes on from its last commit.
 class MapStore {
  public:
-  /// Opens a store or creates an empty one; throws if it is another program's file, damaged or in use.
+  /// Opens a store or creates an empty one; throws if it is another program's file, damaged or in use. A map
+  /// that is there and can only be read now, because the disk is full or read-only, can be loaded; what would
+  /// write to it throws until the disk takes it.
   explicit MapStore(const std::filesystem::path& path);
   MapStore(MapStore&&) noexcept;
   MapStore& operator=(MapStore&&) noexcept;
@@ -60,7 +65,8 @@ class MapStore {
   /// The map that the store holds, checked as by load_map(); nothing while none was begun and committed.
   [[nodiscard]] std::optional<StoredMap> load() const;
 
-  /// False if the last writer was killed: its viewers may have seen up to a second more than is stored.
+  /// False if viewers may have seen more than is stored: the last writer was killed, or this one might be
+  /// before the disk lets it say that it writes.
   [[nodiscard]] bool ended_cleanly() const;
 
   /// The store holds this map from now on. A map of the same epoch goes on: its tiles and path stay, and
@@ -73,6 +79,7 @@ class MapStore {
   void rewrite_trajectory(std::span<const TrajectoryEntry> entries);
 
   void put_level(const HandLevel& level);
+  void set_behind(bool behind);  // see StoredMap
 
   /// Adds a view or replaces the one of this number.
   void put_view(const StoredView& view);

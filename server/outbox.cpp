@@ -252,9 +252,10 @@ Bytes Outbox::next_tiles(ServedMap& map, Time now) {
 }
 
 Bytes Outbox::next_image(Time now) {
-  if (!window_open()) return nullptr;
   for (Bytes& image : images_) {
     if (!image) continue;
+    const bool fits = unacknowledged() + image->size() <= limits_.max_unacknowledged_bytes;
+    if (!fits && unacknowledged() > 0) return nullptr;  // one that never fits goes alone
     count_sent(image, now);
     return std::exchange(image, nullptr);
   }

@@ -132,8 +132,8 @@ void Pipeline::level_map(const HandLevel& level) {
 void Pipeline::rewrite_path(const std::string& reason) {
   path_.correct(correction_);
   unplaced_frames_ = path_.num_unplaced();
-  observer_.path_rewritten(path_.corrected(), reason);
-  map_.correct(correction_);
+  observer_.path_rewritten({++num_corrections_, path_.corrected(), correction_.level(), reason});
+  map_.correct(correction_, num_corrections_);
 }
 
 /// The first generation goes on with the continued map, if there is one.
@@ -161,7 +161,7 @@ void Pipeline::begin_generation(const Generation& generation) {
   if (loops_) loops_->begin_map();
   begin.level = generation.level;
   map_.begin(std::move(begin));
-  if (!generation.level.is_level()) map_.correct(correction_);
+  if (!generation.level.is_level()) map_.correct(correction_, num_corrections_);
 }
 
 /// Where the frame stands in the map; lost for those who look on while that is unknown.

@@ -96,6 +96,7 @@ class Pipeline {
   std::uint64_t seen_generation_ = 0;  // vision thread, as is ...
   CorrectedPath path_;
   PathCorrection correction_;
+  std::uint64_t num_corrections_ = 0;
   std::chrono::steady_clock::time_point status_at_;
   std::uint64_t frames_at_status_ = 0;
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "server/path_rewrite.hpp"
 #include "server/publication.hpp"
 
 namespace flogmap {
@@ -17,11 +18,10 @@ class PipelineObserver {
   virtual void map_changed(std::uint64_t revision, const std::vector<TileUpdate>& updates) = 0;
   virtual void view_mapped(const View& /*view*/) {}  // its cells have just been told by map_changed()
   virtual void path_grew(const std::vector<TrajectoryEntry>& entries) = 0;
-  /// A loop closed, or somebody levelled the map: the whole path so far as it now is, frames that had no
-  /// place before included. The tiles follow when the map has been built anew. `reason`: in words, for
-  /// viewers.
-  virtual void path_rewritten(const std::vector<TrajectoryEntry>& /*path*/, const std::string& /*reason*/) {}
-  virtual void map_levelled(const HandLevel& /*level*/) {}  // its tiles have just been told by map_changed()
+  /// The tiles are still those of the path before, until map_caught_up().
+  virtual void path_rewritten(const PathRewrite& /*rewrite*/) {}
+  /// The map has been built anew for the path of this number; its tiles have just been told by map_changed().
+  virtual void map_caught_up(std::uint64_t /*number*/) {}
   virtual void frame_tracked(const TrackingReport& report) = 0;
   virtual void pictures_taken(const PictureReport& report) = 0;
   virtual void status_changed(const StatusReport& report) = 0;

@@ -9,6 +9,9 @@ flogmap_target(pipeline SOURCES capture_control.cpp loop_stage.cpp map_stage.cpp
                        random_epoch.cpp stage_statistics.cpp
                PUBLIC front_end map_builder loop flog camera Threads::Threads)
 
+flogmap_target(continued_map SOURCES commands/continued_map.cpp
+               PUBLIC map_store flog PRIVATE log mapped_views)
+
 flogmap_target(live_desk SOURCES commands/live_desk.cpp PUBLIC board_calibration PRIVATE nlohmann_json::nlohmann_json)
 
 flogmap_target(flogmap EXECUTABLE
@@ -30,6 +33,6 @@ flogmap_target(flogmap EXECUTABLE
     commands/serve.cpp
     commands/serving.cpp
     commands/simulate.cpp
-  PRIVATE board_calibration live_desk options pipeline hub map_store map_export map_truth trajectory CLI11::CLI11 nlohmann_json::nlohmann_json)
+  PRIVATE board_calibration continued_map live_desk options pipeline hub map_store map_export map_truth trajectory CLI11::CLI11 nlohmann_json::nlohmann_json)
 target_compile_definitions(flogmap PRIVATE FLOGMAP_VERSION="${PROJECT_VERSION}")
 set_target_properties(flogmap PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})

@@ -11,10 +11,14 @@ namespace {
 
 StreamClose bad_frame(std::string reason) { return {kCloseBadFrame, std::move(reason)}; }
 
-/// Resuming would save it nothing. After a kill it may even hold tiles and poses that were never stored: a
-/// continued map begins above all revisions that could have been sent (server/commands/serve.cpp).
-bool all_has_changed_since(const Resume& known, const ServedMap& map) {
-  return known.revision > 0 && known.revision < map.board().oldest_revision().value_or(0);
+/// Why a page of this map must begin anew; null if it may go on from what it has. After a kill it may hold tiles
+/// and poses that were never stored. A continued map begins above all revisions that could have been sent
+/// (server/commands/continued_map.cpp), where the store could tell; where it could not, they are above the
+/// map's.
+const char* why_begin_anew(const Resume& known, const ServedMap& map) {
+  if (known.revision > map.revision()) return "what you have seen was never stored";
+  const bool all_newer = known.revision > 0 && known.revision < map.board().oldest_revision().value_or(0);
+  return all_newer ? "every tile has changed" : nullptr;
 }
 
 }  // namespace
@@ -41,12 +45,13 @@ std::optional<StreamClose> StreamProtocol::on(const Hello& hello, Time) {
   ServedMap& map = *state_.live;
   const MapHeader header = map.header();
   send_control(encode_welcome(header, {}, name_of(role_), state_.info.version));
-  if (hello.resume && hello.resume->epoch == map.epoch() && all_has_changed_since(*hello.resume, map)) {
-    send_control(encode_reset(header, "every tile has changed"));
-  } else if (hello.resume && hello.resume->epoch == map.epoch()) {
-    outbox_.resume(*hello.resume, map);
-  } else if (hello.resume && !hello.resume->epoch.empty()) {
-    send_control(encode_reset(header, "another map"));
+  if (hello.resume && !hello.resume->epoch.empty()) {
+    const bool same_map = hello.resume->epoch == map.epoch();
+    if (const char* why = same_map ? why_begin_anew(*hello.resume, map) : "another map") {
+      send_control(encode_reset(header, why));
+    } else {
+      outbox_.resume(*hello.resume, map);
+    }
   }
   outbox_.status(to_shared(encode_status(state_.status, state_.serving_status())));
   outbox_.playback(to_shared(encode_playback(state_.control.playback())));

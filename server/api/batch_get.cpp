@@ -66,11 +66,13 @@ TileChoice wanted_choice(const nlohmann::json& body, const MapInfo& info) {
 }
 
 /// Those that exist and are newer than what the client has; tiles that were removed after that.
-void sort_out(const TileBoard& board, const std::vector<WantedTile>& wanted, std::vector<Slot>& newer,
+void sort_out(const ServedMap& map, const std::vector<WantedTile>& wanted, std::vector<Slot>& newer,
               std::vector<TileKey>& removed) {
+  const TileBoard& board = map.board();
   for (const WantedTile& tile : wanted) {
     const auto slot = board.find(tile.key);
-    if (!slot || board.revision(*slot) <= tile.known_revision) continue;
+    const bool never_was = tile.known_revision > map.revision();  // of a killed program, never stored
+    if (!slot || (board.revision(*slot) <= tile.known_revision && !never_was)) continue;
     if (board.exists(*slot)) {
       newer.push_back(*slot);
     } else if (tile.known_revision > 0) {
@@ -79,20 +81,28 @@ void sort_out(const TileBoard& board, const std::vector<WantedTile>& wanted, std
   }
 }
 
+nlohmann::ordered_json batch_json(ServedMap& map, const std::vector<Slot>& newer,
+                                  const std::vector<TileKey>& removed, const std::vector<int>& layers) {
+  nlohmann::ordered_json json = {{"epoch", map.epoch()}, {"rev", map.revision()}};
+  json["tiles"] = json["removed"] = nlohmann::ordered_json::array();
+  for (const Slot slot : newer) json["tiles"].push_back(tile_json(map.board(), slot, layers));
+  for (const TileKey& key : removed) {
+    json["removed"].push_back({{"level", key.level}, {"x", key.x}, {"y", key.y}});
+  }
+  return json;
+}
+
 ApiAnswer batch_get(const ApiRequest& request, ServerState& state) {
   ServedMap& map = requested_map(request, state);
   const nlohmann::json body = json_body(request);
   const TileChoice choice = wanted_choice(body, map.board().info());
   std::vector<Slot> newer;
   std::vector<TileKey> removed;
-  sort_out(map.board(), wanted_tiles(body), newer, removed);
+  sort_out(map, wanted_tiles(body), newer, removed);
   const auto type = negotiate(request.accept, {"application/x-protobuf", "application/json"});
   if (!type) throw RefusedRequest(406, "not-acceptable", "offered: application/x-protobuf, application/json");
   if (*type == "application/json") {
-    nlohmann::ordered_json json = {{"epoch", map.epoch()}, {"rev", map.revision()}};
-    json["tiles"] = nlohmann::ordered_json::array();
-    for (const Slot slot : newer) json["tiles"].push_back(tile_json(map.board(), slot, std::nullopt));
-    return json_response(json.dump());
+    return json_response(batch_json(map, newer, removed, choice.layers).dump());
   }
   std::vector<Bytes> tiles;
   for (const Slot slot : newer) tiles.push_back(map.board().message(slot, choice));

@@ -42,18 +42,24 @@ void cut(std::vector<Slot>& slots, const TileBoard& board, std::size_t limit) {
   slots.erase(end, slots.end());
 }
 
-void require_epoch(const ApiRequest& request, const ServedMap& map) {
+/// A revision that never was is one of a killed program, which could not store it.
+void require_known(const ApiRequest& request, std::uint64_t since, const ServedMap& map) {
   const auto epoch = request.parameter("epoch");
-  if (!epoch || *epoch == map.epoch()) return;
-  throw RefusedRequest(409, "epoch-changed",
-                       "another map began; its epoch is " + map.epoch() + ", start from since=0", "epoch");
+  if (epoch && *epoch != map.epoch()) {
+    throw RefusedRequest(409, "epoch-changed",
+                         "another map began; its epoch is " + map.epoch() + ", start from since=0", "epoch");
+  }
+  if (since > map.revision()) {
+    throw RefusedRequest(409, "epoch-changed", "this map never had that revision; start from since=0",
+                         "since");
+  }
 }
 
 ApiAnswer get_changes(const ApiRequest& request, ServerState& state) {
   const ServedMap& map = requested_map(request, state);
-  require_epoch(request, map);
   const TileBoard& board = map.board();
   const auto since = static_cast<std::uint64_t>(integer_parameter(request, "since", 0, 0, INT64_MAX));
+  require_known(request, since, map);
   const auto limit = static_cast<std::size_t>(integer_parameter(request, "limit", kUsualLimit, 1, kMaxLimit));
   std::vector<Slot> slots = changed_slots(board, since, bbox_parameter(request));
   const std::size_t num_changed = slots.size();

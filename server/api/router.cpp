@@ -31,9 +31,7 @@ std::string_view name_of(Method method) {
 
 ApiResponse refused(const ApiRequest& request) {
   if (request.role != Role::none) return problem(403, "control-needed", "this takes the role control");
-  ApiResponse response = problem(401, "token-needed", "send a token, or log in at /api/v1/login");
-  response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"flogmap\"");
-  return response;
+  return problem(401, "token-needed", "send a token, or log in at /api/v1/login");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // GET /maps/{id}/layers/{k|fused}/tiles/{level}/{tx}/{ty}
+#include <algorithm>
 #include <array>
 
 #include "server/api/parameters.hpp"
@@ -7,13 +8,13 @@
 
 namespace flogmap {
 
-nlohmann::ordered_json tile_json(TileBoard& board, Slot slot, std::optional<int> layer) {
+nlohmann::ordered_json tile_json(TileBoard& board, Slot slot, const std::vector<int>& layers) {
   const TileKey key = board.key(slot);
   nlohmann::ordered_json json = {
       {"level", key.level}, {"x", key.x}, {"y", key.y}, {"rev", board.revision(slot)}};
   json["layers"] = nlohmann::ordered_json::array();
   for (int k = 0; k < board.info().grid.num_layers(); ++k) {
-    if (layer && *layer != k) continue;
+    if (!layers.empty() && !std::binary_search(layers.begin(), layers.end(), k)) continue;
     const PlaneBytes planes = evidence_planes(*board.tile(slot), k, board.info().full_confidence_rays[k]);
     const auto E = planes.begin(), O = E + kTileColumns, K = O + kTileColumns;
     json["layers"].push_back({{"layer", k},
@@ -100,7 +101,8 @@ ApiAnswer get_tile(const ApiRequest& request, ServerState& state) {
   } else if (format == TileFormat::protobuf) {
     response = message_of(map, *slot, layer, request);
   } else {
-    response = json_response(tile_json(map.board(), *slot, layer).dump());
+    const std::vector<int> layers = layer ? std::vector<int>{*layer} : std::vector<int>{};
+    response = json_response(tile_json(map.board(), *slot, layers).dump());
     response.etag =
         make_etag(map.epoch(), map.board().revision(*slot), representation(choice, map.operators(), "json"));
   }

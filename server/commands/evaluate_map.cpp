@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mapping/map_truth.hpp"
+#include "server/commands/continued_map.hpp"
 #include "server/map_store.hpp"
 #include "server/option_table.hpp"
 
@@ -24,7 +25,7 @@ void print_row(int layer, const LayerScore& s) {
 
 StoredMap load_input(const std::string& file) {
   try {
-    return load_map(file);
+    return load_settled_map(file);
   } catch (const std::exception& error) {
     throw UsageError(error.what());
   }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/commands/commands.hpp"
+#include "server/commands/continued_map.hpp"
 #include "server/export/map_export.hpp"
 #include "server/map_store.hpp"
 #include "server/option_table.hpp"
@@ -30,7 +31,7 @@ ExportFormat format_of(const std::string& name) {
 StoredMap load_input(const std::string& file) {
   if (file.empty()) throw UsageError("--store is missing; for instance --store map.flog");
   try {
-    return load_map(file);
+    return load_settled_map(file);
   } catch (const std::exception& error) {
     throw UsageError(error.what());
   }

@@ -35,9 +35,7 @@ class MapCollector final : public PipelineObserver {
   void path_grew(const std::vector<TrajectoryEntry>& entries) override {
     path_.insert(path_.end(), entries.begin(), entries.end());
   }
-  void path_rewritten(const std::vector<TrajectoryEntry>& path, const std::string& /*reason*/) override {
-    path_ = path;
-  }
+  void path_rewritten(const PathRewrite& rewrite) override { path_ = rewrite.path; }
   void frame_tracked(const TrackingReport& report) override {
     ++frames_;
     lost_ += report.tracking.state == TrackingState::lost ? 1 : 0;

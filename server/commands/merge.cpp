@@ -7,6 +7,7 @@
 
 #include "mapping/flog/map_merge.hpp"
 #include "server/commands/commands.hpp"
+#include "server/commands/continued_map.hpp"
 #include "server/map_store.hpp"
 #include "server/option_table.hpp"
 
@@ -19,7 +20,7 @@ struct MergeArguments {
 
 StoredMap load_input(const std::string& file) {
   try {
-    return load_map(file);
+    return load_settled_map(file);
   } catch (const std::exception& error) {
     throw UsageError(error.what());
   }

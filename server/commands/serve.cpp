@@ -1,7 +1,6 @@
 // flogmap serve: maps and serves until SIGINT or SIGTERM; without a source, serves a stored map.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -10,81 +9,18 @@
 #include <thread>
 
 #include "server/commands/commands.hpp"
+#include "server/commands/continued_map.hpp"
 #include "server/commands/mapping_session.hpp"
+#include "server/commands/serve_observer.hpp"
 #include "server/commands/serving.hpp"
 #include "server/commands/stored_control.hpp"
 #include "server/hub.hpp"
 #include "server/log.hpp"
 #include "server/map_store.hpp"
 #include "server/pipeline.hpp"
-#include "server/store/store_writer.hpp"
-#include "server/views/view_keeper.hpp"
 
 namespace flogmap {
 namespace {
-
-/// Hands everything on to those who show it and to those who keep it.
-class ServeObserver final : public PipelineObserver {
- public:
-  void connect(Hub* hub, StoreWriter* store) {
-    hub_ = hub;
-    store_ = store;
-  }
-
-  void map_begins(const MapBegin& begin) override {
-    path_ = begin.trajectory;
-    keeper_.begin(begin.views);
-    if (store_ != nullptr) store_->begin(begin);
-    hub_->begin(begin);
-  }
-  void map_changed(std::uint64_t revision, const std::vector<TileUpdate>& updates) override {
-    if (store_ != nullptr) store_->publish(updates);
-    hub_->publish(revision, updates);
-  }
-  void view_mapped(const View& view) override {
-    const SharedView kept = keeper_.keep(view);
-    if (!kept) return;
-    if (store_ != nullptr) store_->put_view(kept);
-    hub_->publish_view(kept);
-  }
-  void path_grew(const std::vector<TrajectoryEntry>& entries) override {
-    path_.insert(path_.end(), entries.begin(), entries.end());
-    if (store_ != nullptr) store_->append_trajectory(entries);
-    // The hub appends the poses of tracking reports itself. Only frames of the first seconds get theirs
-    // later, all at once, when it is decided which way is up.
-    if (entries.size() > 1 || entries.back().timestamp_ns != tracked_ns_) {
-      hub_->rewrite_trajectory(path_, "levelled");
-    }
-  }
-  void path_rewritten(const std::vector<TrajectoryEntry>& path, const std::string& reason) override {
-    path_ = path;
-    if (store_ != nullptr) store_->rewrite_trajectory(path_);
-    hub_->rewrite_trajectory(path_, reason);
-  }
-  void map_levelled(const HandLevel& level) override {
-    if (store_ != nullptr) store_->put_level(level);
-  }
-  void frame_tracked(const TrackingReport& report) override {
-    if (report.world_from_camera) tracked_ns_ = report.timestamp_ns;
-    hub_->publish_tracking(report);
-  }
-  void pictures_taken(const PictureReport& report) override { hub_->publish_pictures(report); }
-  void status_changed(const StatusReport& report) override {
-    StatusReport with_store = report;
-    if (store_ != nullptr) {
-      const StoreState state = store_->state();
-      if (!state.ok) with_store.warnings.push_back(state.problem);
-    }
-    hub_->publish_status(with_store);
-  }
-
- private:
-  Hub* hub_ = nullptr;
-  StoreWriter* store_ = nullptr;
-  std::vector<TrajectoryEntry> path_;
-  ViewKeeper keeper_;             // map thread
-  std::int64_t tracked_ns_ = -1;  // newest frame whose pose the hub has
-};
 
 MapBegin begin_of(const StoredMap& map, const std::string& reason) {
   return {.epoch = map.epoch,
@@ -98,19 +34,32 @@ MapBegin begin_of(const StoredMap& map, const std::string& reason) {
           .level = map.level};
 }
 
+/// A map that cannot be used is bad input.
+StoredMap load_input(const std::filesystem::path& file) {
+  try {
+    return load_settled_map(file);
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
+  }
+}
+
 /// Every *.flog of a folder, by the name of its file.
 void add_stored_maps(Hub& hub, const std::string& folder) {
   if (folder.empty()) return;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     if (entry.path().extension() != ".flog") continue;
-    hub.add_stored_map(entry.path().stem().string(), begin_of(load_map(entry.path()), "stored"));
+    const std::string name = entry.path().stem().string();
+    if (name == "live") {
+      throw UsageError(entry.path().string() + ": 'live' is the name of the map that is being made; rename it");
+    }
+    hub.add_stored_map(name, begin_of(load_input(entry.path()), "stored"));
   }
   if (error) throw UsageError("--maps " + folder + ": " + error.message());
 }
 
 int serve_stored(const Options& options, const HubInfo& info) {
-  const StoredMap map = load_map(options.store);
+  const StoredMap map = load_input(options.store);
   StoredControl control(options.store);
   HubInfo with_calibration = info;
   with_calibration.calibration_json = map.calibration_json;
@@ -123,40 +72,10 @@ int serve_stored(const Options& options, const HubInfo& info) {
   return 0;
 }
 
-/// After a kill, viewers may have seen more than was stored: a second, or, where the disk was full, all since
-/// the start. A revision far above all that they can know makes them take every tile anew. The clock's
-/// milliseconds are above those of any earlier start, stored or not.
-void outrank_what_viewers_know(StoredMap& map) {
-  constexpr std::uint64_t kFarAbove = 1'000'000;
-  const auto now_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
-      std::chrono::system_clock::now().time_since_epoch());
-  map.revision = std::max(map.revision + kFarAbove, static_cast<std::uint64_t>(now_ms.count()));
-  for (TileUpdate& update : map.tiles) {
-    update.tile = std::make_shared<const Tile>(Tile{update.tile->cells, map.revision});
-    update.revision = map.revision;
-  }
-}
-
-/// Stored now, while nothing is mapped: later it would hold up the tiles of the last second. A disk that
-/// refuses it does not keep anybody from mapping; the store's writer tries again and says so.
-void store_outranked(MapStore& store, const StoredMap& map) {
-  try {
-    store.begin(map);
-    store.commit();
-  } catch (const std::runtime_error&) {
-    store.rollback();
-  }
-}
-
 /// Takes up the map that the store holds, if there is one.
 ContinuedMap continue_stored(MapStore& store, const Options& options, MappingSession& session) {
-  std::optional<StoredMap> stored = store.load();
+  std::optional<StoredMap> stored = take_up(store, options.flog);
   if (!stored) return {};
-  check_same_grid(options.store, stored->info.grid, options.flog.grid);
-  if (!store.ended_cleanly()) {
-    outrank_what_viewers_know(*stored);
-    store_outranked(store, *stored);
-  }
   session.integrator.restore(snapshot_of(*stored));
   // A robot is where it was switched off; a recording begins where it always does.
   const bool stays = session.source->info().live && !stored->trajectory.empty() && !options.first_pose;

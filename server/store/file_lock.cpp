@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "server/store/sqlite.hpp"
+
 namespace flogmap {
 namespace {
 
@@ -29,6 +31,13 @@ bool is_still_there(int descriptor, const std::filesystem::path& path) {
          opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
+/// As SQLite would call it, had it come so far.
+SqliteFault fault_of_open(int error) {
+  if (error == ENOSPC || error == EDQUOT) return SqliteFault::disk_full;
+  if (error == EROFS || error == EACCES || error == EPERM) return SqliteFault::read_only;
+  return error == EIO ? SqliteFault::disk_error : SqliteFault::cannot_open;
+}
+
 void write_process_id(int descriptor) {
   const std::string id = std::to_string(::getpid());
   if (::ftruncate(descriptor, 0) != 0 || ::pwrite(descriptor, id.data(), id.size(), 0) < 0) {
@@ -42,8 +51,8 @@ FileLock::FileLock(const std::filesystem::path& path) : lock_path_(path.string()
   while (descriptor_ < 0) {
     const int descriptor = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (descriptor < 0) {
-      throw std::runtime_error(path.string() + ": cannot be written (" + std::strerror(errno) +
-                               "); choose a folder that exists and may be written");
+      throw SqliteError(fault_of_open(errno), path.string() + ": cannot be written (" + std::strerror(errno) +
+                                                  "); choose a folder that exists and may be written");
     }
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       const std::string holder = holder_of(descriptor);

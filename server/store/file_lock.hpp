@@ -9,7 +9,8 @@ namespace flogmap {
 /// locks.
 class FileLock {
  public:
-  /// Locks `path` + ".lock"; throws std::runtime_error naming the process that holds it.
+  /// Locks `path` + ".lock". Throws std::runtime_error naming the process that holds it, SqliteError if the
+  /// folder takes no file.
   explicit FileLock(const std::filesystem::path& path);
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;

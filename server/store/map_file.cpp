@@ -12,6 +12,7 @@
 #include "server/store/map_reader.hpp"
 #include "server/store/map_schema.hpp"
 #include "server/store/map_tables.hpp"
+#include "server/store/store_file.hpp"
 
 namespace flogmap {
 namespace {
@@ -19,28 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path beside(const fs::path& path, const char* suffix) { return path.string() + suffix; }
-
-void check_is_file(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw std::runtime_error(path.string() + ": no such file; name a map.flog");
-  if (!fs::is_regular_file(status)) throw std::runtime_error(path.string() + ": not a file; name a map.flog");
-}
-
-/// Where nothing may be written SQLite cannot even lock, but a file without a journal needs no lock there.
-SqliteDatabase open_for_reading(const fs::path& path) {
-  check_is_file(path);
-  try {
-    SqliteDatabase database(path, SqliteDatabase::Mode::read);
-    is_blank(database);
-    return database;
-  } catch (const SqliteError& error) {
-    const bool unwritable =
-        error.fault() == SqliteFault::cannot_open || error.fault() == SqliteFault::read_only;
-    if (!unwritable || fs::exists(beside(path, "-wal"))) throw;
-  }
-  return {path, SqliteDatabase::Mode::immutable};
-}
 
 void sync(const fs::path& path, int flags) {
   const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
@@ -95,7 +74,7 @@ class TemporaryFile {
 }  // namespace
 
 StoredMap load_map(const fs::path& path) {
-  SqliteDatabase database = open_for_reading(path);
+  SqliteDatabase database = open_map_for_reading(path);
   check_map_schema(database);
   if (!has_header(database)) {
     throw std::runtime_error(path.string() + ": holds no map yet; map something into it first");

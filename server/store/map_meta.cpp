@@ -117,7 +117,8 @@ void write_level(const SqliteDatabase& database, const HandLevel& level) {
 }
 
 void write_seal(const SqliteDatabase& database, const MapSeal& seal) {
-  const Json json{{"revision", seal.revision},   {"clean", seal.clean},         {"num_tiles", seal.num_tiles},
+  const Json json{{"revision", seal.revision},   {"clean", seal.clean},         {"behind", seal.behind},
+                  {"num_tiles", seal.num_tiles},
                   {"tiles_sum", seal.tiles_sum}, {"num_poses", seal.num_poses}, {"poses_sum", seal.poses_sum},
                   {"num_views", seal.num_views}, {"views_sum", seal.views_sum}};
   write_text(database, "seal", json.dump());
@@ -150,7 +151,8 @@ MapSeal read_seal(const SqliteDatabase& database) {
             .poses_sum = json.at("poses_sum"),
             .num_views = json.at("num_views"),
             .views_sum = json.at("views_sum"),
-            .clean = json.at("clean")};
+            .clean = json.at("clean"),
+            .behind = json.value("behind", false)};
   } catch (const Json::exception& error) {
     throw damaged(database.file(), std::string("meta 'seal': ") + error.what());
   }

@@ -15,7 +15,8 @@ struct MapSeal {
   std::uint64_t num_tiles = 0, tiles_sum = 0;
   std::uint64_t num_poses = 0, poses_sum = 0;
   std::uint64_t num_views = 0, views_sum = 0;
-  bool clean = true;  // the writer closed the store itself
+  bool clean = true;    // the writer closed the store itself
+  bool behind = false;  // the tiles are those of the path before its last correction
   bool operator==(const MapSeal&) const = default;
 };
 

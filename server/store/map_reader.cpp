@@ -154,6 +154,7 @@ StoredMap read_map(SqliteDatabase& database) {
   const MapSeal seal = read_seal(database);
   StoredMap map = read_header(database);
   map.revision = seal.revision;
+  map.behind = seal.behind;
   read_tiles(database, seal, map);
   read_trajectory(database, seal, map);
   read_views(database, seal, map);

@@ -25,7 +25,8 @@ void MapTables::replace_all(const StoredMap& map) {
   check_header(map);
   database_.execute("DELETE FROM meta; DELETE FROM tiles; DELETE FROM trajectory; DELETE FROM views");
   write_header(database_, map);
-  resume({.revision = map.revision, .clean = seal_.clean}, map.info.grid.num_layers());
+  resume({.revision = map.revision, .clean = seal_.clean, .behind = map.behind},
+         map.info.grid.num_layers());
   put_tiles(map.tiles);
   append_trajectory(map.trajectory);
   for (const SharedView& view : map.views) put_view(*view);
@@ -34,6 +35,7 @@ void MapTables::replace_all(const StoredMap& map) {
 void MapTables::carry_on(const StoredMap& map) {
   write_header(database_, map);
   seal_.revision = std::max(seal_.revision, map.revision);
+  seal_.behind = map.behind;
   put_tiles(map.tiles);
   if (map.trajectory.size() != seal_.num_poses) rewrite_trajectory(map.trajectory);
 }

@@ -30,6 +30,7 @@ class MapTables {
   /// Reads what is stored already; the layers tell how long a tile is.
   void resume(const MapSeal& seal, int num_layers);
   void set_clean(bool clean) { seal_.clean = clean; }
+  void set_behind(bool behind) { seal_.behind = behind; }
   [[nodiscard]] const MapSeal& seal() const { return seal_; }
 
  private:

@@ -26,7 +26,7 @@ void StoreMailbox::merge(StoreMailbox later) {
   }
   new_poses.insert(new_poses.end(), std::make_move_iterator(later.new_poses.begin()),
                    std::make_move_iterator(later.new_poses.end()));
-  if (later.level) level = later.level;
+  if (later.caught_up) caught_up = later.caught_up;
   for (auto& [number, view] : later.views) {
     if (views.size() < kMaxWaitingViews || views.contains(number)) views[number] = std::move(view);
   }
@@ -61,9 +61,15 @@ void StoreWriter::append_trajectory(const std::vector<TrajectoryEntry>& entries)
   post(std::move(later));
 }
 
-void StoreWriter::rewrite_trajectory(std::vector<TrajectoryEntry> entries) {
+void StoreWriter::rewrite_path(PathRewrite rewrite) {
   StoreMailbox later;
-  later.path = std::move(entries);
+  later.path = std::move(rewrite);
+  post(std::move(later));
+}
+
+void StoreWriter::caught_up(std::uint64_t number) {
+  StoreMailbox later;
+  later.caught_up = number;
   post(std::move(later));
 }
 
@@ -73,16 +79,10 @@ void StoreWriter::put_view(SharedView view) {
   post(std::move(later));
 }
 
-void StoreWriter::put_level(const HandLevel& level) {
-  StoreMailbox later;
-  later.level = level;
-  post(std::move(later));
-}
-
 StoreState StoreWriter::state() const {
   const std::scoped_lock lock(mutex_);
   StoreState state = state_;
-  state.waiting_tiles = mailbox_.tiles.size();
+  state.waiting_tiles = mailbox_.tiles.size() + tiles_in_work_;
   return state;
 }
 
@@ -119,6 +119,7 @@ void StoreWriter::run(const std::stop_token& stop) {
     more = wait_for_mail(stop);
     std::unique_lock lock(mutex_);
     StoreMailbox batch = std::exchange(mailbox_, {});
+    tiles_in_work_ = batch.tiles.size();
     const std::uint64_t newest = posted_;
     hurry_ = false;
     lock.unlock();
@@ -134,6 +135,7 @@ void StoreWriter::write(StoreMailbox batch) {
     apply(batch);
     store_.commit();
     const std::scoped_lock lock(mutex_);
+    tiles_in_work_ = 0;
     state_.ok = true;
     state_.problem.clear();
     state_.committed_revision = store_.revision();
@@ -152,10 +154,15 @@ void StoreWriter::apply(const StoreMailbox& batch) {
   std::vector<TileUpdate> updates;
   for (const auto& [index, update] : batch.tiles) updates.push_back(update);
   store_.put_tiles(updates);
-  if (batch.path) store_.rewrite_trajectory(*batch.path);
+  if (batch.path) {
+    store_.rewrite_trajectory(batch.path->path);
+    store_.put_level(batch.path->level);
+    store_.set_behind(true);
+    path_number_ = batch.path->number;
+  }
   store_.append_trajectory(batch.new_poses);
   for (const auto& [number, view] : batch.views) store_.put_view(*view);
-  if (batch.level) store_.put_level(*batch.level);
+  if (batch.caught_up && *batch.caught_up >= path_number_) store_.set_behind(false);
 }
 
 /// What the disk refused waits for the next attempt, under what was published since.
@@ -169,6 +176,7 @@ void StoreWriter::refused(StoreMailbox batch, const std::string& why) {
   const std::scoped_lock lock(mutex_);
   batch.merge(std::exchange(mailbox_, {}));
   mailbox_ = std::move(batch);
+  tiles_in_work_ = 0;
   state_.ok = false;
   state_.problem = std::move(problem);
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "server/map_store.hpp"
+#include "server/path_rewrite.hpp"
 #include "server/publication.hpp"
 
 namespace flogmap {
@@ -30,13 +31,13 @@ struct StoreState {
 struct StoreMailbox {
   std::optional<MapBegin> begin;
   std::map<TileIndex, TileUpdate> tiles;
-  std::optional<std::vector<TrajectoryEntry>> path;  // the whole path anew, before `new_poses`
+  std::optional<PathRewrite> path;  // the whole path anew, before `new_poses`
   std::vector<TrajectoryEntry> new_poses;
   std::map<std::int64_t, SharedView> views;
-  std::optional<HandLevel> level;
+  std::optional<std::uint64_t> caught_up;  // the tiles are those of the path of this number
 
   [[nodiscard]] bool empty() const {
-    return !begin && tiles.empty() && !path && new_poses.empty() && views.empty() && !level;
+    return !begin && tiles.empty() && !path && new_poses.empty() && views.empty() && !caught_up;
   }
   /// Adds what was said later: a new map or path replaces what was before, a newer tile the older one.
   void merge(StoreMailbox later);
@@ -59,9 +60,10 @@ class StoreWriter {
   void begin(MapBegin map);
   void publish(const std::vector<TileUpdate>& updates);
   void append_trajectory(const std::vector<TrajectoryEntry>& entries);
-  void rewrite_trajectory(std::vector<TrajectoryEntry> entries);
+  void rewrite_path(PathRewrite rewrite);
+  /// The tiles of this path have been published. Until then the store says of itself that they are behind.
+  void caught_up(std::uint64_t number);
   void put_view(SharedView view);
-  void put_level(const HandLevel& level);
   [[nodiscard]] StoreState state() const;
 
   /// Commits now and returns when everything published before is durable, or when the disk refused it.
@@ -77,12 +79,14 @@ class StoreWriter {
 
   const Milliseconds commit_every_;
   const std::string options_json_, calibration_json_;
-  MapStore store_;  // of the writer's thread alone
+  MapStore store_;                 // of the writer's thread alone, as is
+  std::uint64_t path_number_ = 0;  // of the stored path
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   StoreMailbox mailbox_;
   StoreState state_;
+  std::size_t tiles_in_work_ = 0;  // taken out of the mailbox, neither committed nor refused yet
   std::uint64_t posted_ = 0;    // number of the newest mail ...
   std::uint64_t answered_ = 0;  // ... and of the newest that was committed or refused
   bool hurry_ = false;

@@ -81,6 +81,7 @@ std::vector<Case> session_cases() {
   const std::string playback = "/api/v1/playback", session = "/api/v1/session";
   const std::string left = "/api/v1/frames/{stream}/latest";
   return {
+      {"GET", "/api/v1/stream", "/api/v1/stream", 400},
       {"GET", session, session},
       {"POST", session + ":pause", session + ":pause", 409},
       {"GET", playback, playback},

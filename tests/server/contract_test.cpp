@@ -11,6 +11,7 @@
 
 #include "tests/camera/small_scene.hpp"
 #include "tests/camera/temporary_folder.hpp"
+#include "tests/server/client_frames.hpp"
 #include "tests/server/contract_cases.hpp"
 #include "tests/server/json_schema.hpp"
 #include "tests/server/loopback_hub.hpp"
@@ -140,11 +141,11 @@ void check_reply(const YAML::Node& document, const YAML::Node& operation, const 
 
 using Answers = std::set<std::tuple<std::string, std::string, std::string>>;
 
-/// Not to be had from this program: starting, draining and being overrun (tested elsewhere), an empty map, a
-/// source that cannot be moved or reset, a map whose views are gone.
+/// Not to be had from this program by a request: the opened stream, starting, draining and being overrun (tested
+/// elsewhere), an empty map, a source that cannot be moved or reset, a map whose views are gone.
 bool out_of_reach(const std::string& method, const std::string& path, const std::string& status) {
   if (path.starts_with("/api/v1/calibrate") && status != "404") return true;  // of `flogmap calibrate` alone
-  return status == "503" || status == "429" || status == "default" ||
+  return status == "101" || status == "503" || status == "429" || status == "default" ||
          (status == "204" && path.ends_with("/image.png")) || (status == "409" && method == "PATCH") ||
          (status == "409" && (path.ends_with(":reset") || path.ends_with(":level")));
 }
@@ -267,8 +268,18 @@ TEST_F(Contract, TenWrongTokensAreEnoughForAMinute) {
 
 TEST(Program, EndsWithinTenSecondsAndSaysGoodbye) {
   const testing::TemporaryFolder folder;
-  RunningProgram program({"--source", "sim:" + folder.write("scene.json", testing::kSmallScene).string()});
-  EXPECT_EQ(program.end(SIGTERM), 0);
+  RunningProgram program({"--source", "sim:" + folder.write("scene.json", testing::kSmallScene).string(), "--store",
+                          (folder.path() / "map.flog").string()});
+  const auto ready = [&] { return http(program.port(), "GET", "/readyz").status == 200; };
+  for (int i = 0; i < 600 && !ready(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  StreamClient reads(program.port()), stalls(program.port());
+  reads.send(hello_frame());
+  stalls.send(hello_frame());
+  const auto asked = std::chrono::steady_clock::now();
+  ::kill(program.pid(), SIGTERM);
+  EXPECT_EQ(reads.wait_for_close(), 1001);
+  EXPECT_EQ(program.end(0), 0);  // only waits
+  EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(10));
   const std::vector<std::string> log = program.log();
   EXPECT_TRUE(std::any_of(log.begin(), log.end(), [](const std::string& line) {
     return line.find("\"shutting down\"") != std::string::npos;

@@ -166,6 +166,25 @@ TEST_F(StreamTest, DrainingSaysGoodbyeAndCloses) {
   server_.join();
 }
 
+TEST_F(StreamTest, WhileItDrainsTheServerSaysSoToEverybody) {
+  begin();
+  StreamClient::Options narrow;
+  narrow.receive_buffer_bytes = 4096;
+  StreamClient sleeper(server_.port(), narrow);  // keeps the server from ending at once
+  greet(sleeper);
+  step(100);
+  server_.hub().drain("shutting down");
+  HttpReply ready = http(server_.port(), "GET", "/readyz");
+  for (int i = 0; i < 100 && ready.status == 200; ++i) ready = http(server_.port(), "GET", "/readyz");
+  EXPECT_EQ(ready.status, 503);
+  EXPECT_THAT(ready.body, ::testing::HasSubstr("shutting down"));
+  const HttpReply map = http(server_.port(), "GET", "/api/v1/maps/live");
+  EXPECT_EQ(map.status, 503);
+  EXPECT_EQ(map.headers.count("retry-after"), 1U);
+  EXPECT_THROW(StreamClient late(server_.port()), std::runtime_error);
+  server_.join();
+}
+
 TEST_F(StreamTest, StrangersAreRefusedBeforeTheStreamOpens) {
   begin();
   const auto status = [&](const HttpHeaders& more) {

@@ -56,6 +56,29 @@ TEST(MapStore, KeepsHowTheMapWasLevelledUntilItIsLevelledAgain) {
   EXPECT_EQ(difference(load_map(folder / "map.flog"), map), "");
 }
 
+TEST(MapStore, SaysThatItsTilesAreBehindUntilToldOtherwise) {
+  const TemporaryFolder folder;
+  const auto path = folder / "map.flog";
+  StoredMap map = random_map(1);
+  {
+    MapStore store(path);
+    store.begin(map);
+    store.set_behind(true);
+    store.commit();
+    EXPECT_TRUE(load_map(path).behind);
+  }
+  MapStore store(path);
+  EXPECT_TRUE(store.load()->behind);
+  map.behind = false;
+  store.begin(map);  // goes on with tiles that follow the path
+  store.commit();
+  EXPECT_FALSE(load_map(path).behind);
+  store.set_behind(true);
+  store.rollback();
+  store.commit();
+  EXPECT_FALSE(load_map(path).behind);
+}
+
 TEST(MapStore, CanBeReadByOthersWhileItIsWritten) {
   const TemporaryFolder folder;
   const StoredMap first = random_map(1);

@@ -116,6 +116,7 @@ std::string difference(const StoredMap& a, const StoredMap& b) {
   if (a.camera != b.camera) return "camera";
   if (a.revision != b.revision) return "revision";
   if (a.level != b.level) return "level";
+  if (a.behind != b.behind) return "behind";
   if (a.options_json != b.options_json || a.calibration_json != b.calibration_json) return "options";
   if (a.tiles.size() != b.tiles.size()) return "number of tiles";
   for (std::size_t i = 0; i < a.tiles.size(); ++i) {

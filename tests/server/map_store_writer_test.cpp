@@ -50,14 +50,18 @@ TEST(StoreMailbox, ANewMapReplacesWhatWasWaiting) {
   EXPECT_TRUE(box.new_poses.empty());
 }
 
+PathRewrite rewrite_of(std::uint64_t number, const std::vector<TrajectoryEntry>& path) {
+  return {.number = number, .path = path, .level = {.yaw_rad = 0.1 * static_cast<double>(number)}, .reason = {}};
+}
+
 TEST(StoreMailbox, ARewrittenPathReplacesThePosesThatWereWaiting) {
   StoreMailbox box;
   box.new_poses.resize(3);
   StoreMailbox later;
-  later.path.emplace(7);
+  later.path = rewrite_of(1, std::vector<TrajectoryEntry>(7));
   later.new_poses.resize(2);
   box.merge(std::move(later));
-  EXPECT_EQ(box.path->size(), 7U);
+  EXPECT_EQ(box.path->path.size(), 7U);
   EXPECT_EQ(box.new_poses.size(), 2U);
 }
 
@@ -75,7 +79,9 @@ TEST(StoreWriter, StoresWhatWasPublished) {
       writer.append_trajectory({map.trajectory.back()});
       if (i == 20) {
         map.trajectory.resize(5);
-        writer.rewrite_trajectory(map.trajectory);
+        writer.rewrite_path(rewrite_of(1, map.trajectory));
+        map.level = rewrite_of(1, {}).level;
+        map.behind = true;  // nobody says that the tiles follow
       }
     }
     const StoreState state = writer.flush();
@@ -102,6 +108,32 @@ TEST(StoreWriter, CommitsOfItselfAndOnceMoreWhenItEnds) {
     writer.publish({map.tiles[0]});
   }
   EXPECT_EQ(difference(load_map(folder / "map.flog"), map), "");
+}
+
+TEST(StoreWriter, FromARewrittenPathUntilItsTilesAreThereTheStoreSaysThatTheyAreBehind) {
+  const TemporaryFolder folder;
+  const StoredMap map = random_map(4);
+  StoreWriter writer(MapStore(folder / "map.flog"), "{}", "{}");
+  const auto stored = [&] {
+    EXPECT_TRUE(writer.flush().ok);
+    return load_map(folder / "map.flog");
+  };
+  writer.begin(begin_of(map));
+  EXPECT_FALSE(stored().behind);
+  writer.rewrite_path(rewrite_of(1, map.trajectory));
+  EXPECT_TRUE(stored().behind);
+  EXPECT_EQ(stored().level, rewrite_of(1, {}).level);  // the level is the path's, not that of the tiles
+  writer.rewrite_path(rewrite_of(2, map.trajectory));
+  writer.caught_up(1);  // with the path before
+  EXPECT_TRUE(stored().behind);
+  writer.caught_up(2);
+  EXPECT_FALSE(stored().behind);
+  writer.rewrite_path(rewrite_of(3, map.trajectory));
+  EXPECT_TRUE(stored().behind);
+  MapBegin another = begin_of(random_map(5));
+  another.epoch = "00000000000000ff";
+  writer.begin(another);
+  EXPECT_FALSE(stored().behind);
 }
 
 /// A disk that takes no more: the size of files is limited. True if the writer says so, goes on trying, and

@@ -20,14 +20,13 @@ class PathWitness final : public PipelineObserver {
   void path_grew(const std::vector<TrajectoryEntry>& entries) override {
     path.insert(path.end(), entries.begin(), entries.end());
   }
-  void path_rewritten(const std::vector<TrajectoryEntry>& whole, const std::string& /*reason*/) override {
-    path = whole;
+  void path_rewritten(const PathRewrite& rewrite) override {
+    path = rewrite.path;
+    level = rewrite.level;
     ++rewrites;
+    if (!level.is_level()) levelled_by = rewrite.number;
   }
-  void map_levelled(const HandLevel& now) override {
-    level = now;
-    ++levelled;
-  }
+  void map_caught_up(std::uint64_t number) override { caught_up = number; }
   void frame_tracked(const TrackingReport& report) override { reports.push_back(report); }
   void pictures_taken(const PictureReport& /*report*/) override {}
   void status_changed(const StatusReport& /*report*/) override {}
@@ -37,7 +36,8 @@ class PathWitness final : public PipelineObserver {
   std::vector<TrackingReport> reports;
   int rewrites = 0;
   HandLevel level;
-  std::atomic<int> levelled = 0;
+  std::atomic<std::uint64_t> levelled_by = 0;  // number of the rewrite that levelled the path
+  std::atomic<std::uint64_t> caught_up = 0;
 };
 
 struct MappedPath {
@@ -65,7 +65,9 @@ inline std::unique_ptr<MappedPath> map_path(std::unique_ptr<StereoSource> source
   if (!batch) {
     while (pipeline.control().state() != SessionState::finished) std::this_thread::yield();
     if (level && pipeline.control().level(*level).outcome == ControlOutcome::done) {
-      while (mapped->witness.levelled == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      const PathWitness& witness = mapped->witness;
+      while (witness.levelled_by == 0 || witness.caught_up < witness.levelled_by)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     pipeline.stop();
   }

@@ -1,67 +1,22 @@
-// The running program and its disk: killed at any moment, with no room, and with room again. STORE_KILLS says
-// how often it is killed (4 unless set).
+// The running program and its store: killed at any moment. STORE_KILLS says how often (4 unless set).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <algorithm>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <random>
 
-#include "server/map_store.hpp"
-#include "tests/camera/small_scene.hpp"
-#include "tests/server/loopback_hub.hpp"
-#include "tests/server/map_store_support.hpp"
-#include "tests/server/running_program.hpp"
+#include "tests/server/mapping_program.hpp"
 
 namespace flogmap {
 namespace {
 
-using nlohmann::json;
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
-using ::testing::HasSubstr;
 using testing::TemporaryFolder;
-
-constexpr auto kPatience = std::chrono::seconds(60);
 
 int num_kills() {
   const char* wanted = std::getenv("STORE_KILLS");
   return wanted != nullptr ? std::atoi(wanted) : 4;
-}
-
-/// A small scene walked through without end, its map kept beside it.
-std::vector<std::string> mapping_into(const std::filesystem::path& store,
-                                      const std::filesystem::path& folder) {
-  std::ofstream(folder / "scene.json") << testing::kSmallScene;
-  return {"--source", "sim:" + (folder / "scene.json").string(), "--pace", "fast", "--store", store.string()};
-}
-
-/// The store holds a map; what is no map makes load_map() throw.
-bool holds_a_map(const std::filesystem::path& store) {
-  return testing::error_of([&] { (void)load_map(store); }).empty();
-}
-
-json session_of(const RunningProgram& program) {
-  return json::parse(http(program.port(), "GET", "/api/v1/session").body);
-}
-
-std::uint64_t revision_of(const RunningProgram& program) {
-  const json session = session_of(program);
-  return session["rev"].is_number() ? session["rev"].get<std::uint64_t>() : 0;
-}
-
-/// Until `holds` does; false after a minute.
-template <typename Condition>
-bool wait_until(const Condition& holds) {
-  const auto deadline = steady_clock::now() + kPatience;
-  while (!holds()) {
-    if (steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(milliseconds(50));
-  }
-  return true;
 }
 
 TEST(ProgramStore, KilledAtAnyMomentItLacksAtMostTheLastSecond) {
@@ -90,104 +45,30 @@ TEST(ProgramStore, KilledAtAnyMomentItLacksAtMostTheLastSecond) {
   EXPECT_LE(late, 1 + num_kills() / 50);
 }
 
-void limit_files_of(const RunningProgram& program, rlim_t bytes) {
-  const rlimit limit{bytes, RLIM_INFINITY};
-  ASSERT_EQ(::prlimit(program.pid(), RLIMIT_FSIZE, &limit, nullptr), 0);
-}
-
-bool is_ready(const RunningProgram& program) {
-  return json::parse(http(program.port(), "GET", "/readyz").body)["ready"] == true;
-}
-
-/// What /readyz says of the store; empty if nothing. Only for a program that is ready.
-std::string warning_of(const RunningProgram& program, const std::filesystem::path& store) {
-  const json ready = json::parse(http(program.port(), "GET", "/readyz").body);
-  EXPECT_EQ(ready["ready"], true);
-  for (const std::string warning : ready["warnings"]) {
-    if (warning.find(store.string()) != std::string::npos) return warning;
-  }
-  return {};
-}
-
-TEST(ProgramStore, AFullDiskIsSaidInWordsAndMappingGoesOn) {
+TEST(ProgramStore, AMapWhoseTilesAreBehindItsPathIsBuiltAnewAtTheNextStart) {
   const TemporaryFolder folder = TemporaryFolder::in_memory();
   const auto store = folder / "map.flog";
-  std::signal(SIGXFSZ, SIG_IGN);  // inherited: writing beyond the limit is an error, as on a full disk
-  RunningProgram program(mapping_into(store, folder.path()));
-  ASSERT_TRUE(wait_until([&] { return holds_a_map(store); }));
-  limit_files_of(program, 20'000);
-  ASSERT_TRUE(wait_until([&] { return !warning_of(program, store).empty(); }));
-  EXPECT_THAT(warning_of(program, store), HasSubstr("mapping goes on"));
-  const std::uint64_t then = revision_of(program);
-  EXPECT_TRUE(wait_until([&] { return revision_of(program) > then; }));
-  EXPECT_TRUE(holds_a_map(store));
-  limit_files_of(program, RLIM_INFINITY);
-  EXPECT_TRUE(wait_until([&] { return warning_of(program, store).empty(); }));
-  EXPECT_TRUE(program.wait_for_log("no longer so", std::chrono::seconds(5)));
-  const std::uint64_t last = revision_of(program);
-  EXPECT_EQ(program.end(SIGTERM), 0);
-  EXPECT_GE(load_map(store).revision, last);
-}
-
-/// What this process and those that it starts may write into a file, until the end of the scope.
-class FileLimit {
- public:
-  explicit FileLimit(rlim_t bytes) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-  FileLimit(const FileLimit&) = delete;
-  FileLimit& operator=(const FileLimit&) = delete;
-
- private:
-  rlimit before_{};
-};
-
-/// Maps until the journal holds more than `bytes`, and is killed.
-void leave_a_journal(const std::filesystem::path& store, const std::filesystem::path& folder,
-                     std::uintmax_t bytes) {
-  RunningProgram program(mapping_into(store, folder));
-  EXPECT_TRUE(wait_until([&] {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(store.string() + "-wal", error);
-    return !error && size > bytes && revision_of(program) > 0;
-  }));
-  program.end(SIGKILL);
-}
-
-TEST(ProgramStore, ADiskThatIsFullRightAfterAKillKeepsNobodyFromMapping) {
-  const TemporaryFolder folder = TemporaryFolder::in_memory();
-  const auto store = folder / "map.flog";
-  std::signal(SIGXFSZ, SIG_IGN);
-  leave_a_journal(store, folder.path(), 200'000);
   const std::vector<std::string> arguments = mapping_into(store, folder.path());
-  std::unique_ptr<RunningProgram> program;
   {
-    const FileLimit no_room(40'000);  // of the journal's index alone there is enough
-    program = std::make_unique<RunningProgram>(arguments);
+    RunningProgram program(arguments);
+    ASSERT_TRUE(wait_until([&] { return revision_of(program) > 10; }));
+    EXPECT_EQ(program.end(SIGTERM), 0);
   }
-  ASSERT_TRUE(wait_until([&] { return is_ready(*program); }));
-  ASSERT_TRUE(wait_until([&] { return !warning_of(*program, store).empty(); }));
-  EXPECT_THAT(warning_of(*program, store), HasSubstr("mapping goes on"));
-  const std::uint64_t then = revision_of(*program);
-  EXPECT_TRUE(wait_until([&] { return revision_of(*program) > then; }));
-  limit_files_of(*program, RLIM_INFINITY);
-  EXPECT_TRUE(wait_until([&] { return warning_of(*program, store).empty(); }));
-  const std::uint64_t last = revision_of(*program);
-  EXPECT_EQ(program->end(SIGTERM), 0);
-  EXPECT_GE(load_map(store).revision, last);
-}
-
-TEST(ProgramStore, AStoreThatCannotBeWrittenIsRefusedAtTheStart) {
-  const TemporaryFolder folder;
-  try {
-    RunningProgram program(mapping_into("/proc/flogmap/map.flog", folder.path()));
-    FAIL() << "it came up";
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("/proc/flogmap/map.flog"));
+  const StoredMap before = load_map(store);
+  {
+    MapStore file(store);
+    file.begin(before);
+    file.set_behind(true);  // as a kill leaves it while the map is built anew
+    file.commit();
   }
+  RunningProgram program(arguments);
+  EXPECT_TRUE(program.wait_for_log("is built anew", std::chrono::seconds(5)));
+  EXPECT_GT(revision_of(program), before.revision);
+  EXPECT_EQ(program.end(SIGTERM), 0);
+  const StoredMap after = load_map(store);
+  EXPECT_FALSE(after.behind);
+  EXPECT_EQ(after.epoch, before.epoch);
+  EXPECT_GE(after.tiles.size(), before.tiles.size());
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ class RunningProgram {
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] pid_t pid() const { return pid_; }
 
-  /// Sends a signal and waits; the exit code, or -signal if it was killed.
+  /// Sends a signal (0: none) and waits; the exit code, or -signal if it was killed.
   int end(int signal);
 
   /// What it wrote to stderr so far, a line each.

@@ -176,6 +176,35 @@ TEST_F(ProtocolTest, AfterAKillAViewerKeepsNothingThatWasNeverStored) {
   EXPECT_EQ(difference(viewer, *state_.live, {{}, Planes::evidence}), "");
 }
 
+// The disk took nothing from the start until a kill: what goes on is the map of before, at its old revision.
+TEST_F(ProtocolTest, AViewerThatKnowsARevisionThatNeverWasBeginsAnew) {
+  const MapBegin earlier = SyntheticWalk().begin("0000000000000001", "continued");
+  StreamProtocol protocol(state_, Role::view, start_);
+  const std::uint64_t seen = walk_.revision();
+  ASSERT_GT(seen, earlier.revision);
+  state_.live = std::make_unique<ServedMap>("live", earlier, Operators::algebraic);
+  protocol.receive(hello_frame(Resume{"0000000000000001", seen, 5}), start_);
+  TileMirror viewer;
+  bool reset = false;
+  while (const Bytes message = next(protocol, start_))
+    reset = viewer.take(*message) == TileMirror::Effect::reset || reset;
+  EXPECT_TRUE(reset);
+}
+
+TEST_F(ProtocolTest, PicturesCountToTheMebibyteThatMayBeUnacknowledged) {
+  Outbox outbox;
+  outbox.subscribe({{{}, Planes::value}, {}, 0, false}, *state_.live);
+  while (outbox.next(*state_.live, start_)) outbox.acknowledge(outbox.unacknowledged(), start_);
+  for (const std::size_t kib : {300, 300, 300, 300, 2000, 300}) {
+    outbox.image(ImageStream::left, to_shared(std::string(kib << 10U, 'x')));
+    while (outbox.next(*state_.live, start_)) {
+    }
+    EXPECT_LE(outbox.unacknowledged(), WireLimits{}.max_unacknowledged_bytes);
+  }
+  const std::uint64_t sent = 900U << 10U;
+  EXPECT_EQ(outbox.unacknowledged(), sent);
+}
+
 TEST(Mailbox, KeepsTheNewestOfEachTileAndWakesOnce) {
   Mailbox mailbox;
   const auto tile = std::make_shared<const Tile>();
