@@ -195,8 +195,8 @@ void HttpSession<Stream>::open_stream() {
   }
   http::token_list offered(message[http::field::sec_websocket_protocol]);
   if (!offered.exists({kStreamProtocol.data(), kStreamProtocol.size()})) {
-    return respond(
-        problem(400, "no-common-protocol", "offer flogmap.v1.proto", "Sec-WebSocket-Protocol"), false);
+    return respond(problem(400, "no-common-protocol", "offer flogmap.v1.proto", "Sec-WebSocket-Protocol"),
+                   false);
   }
   beast::get_lowest_layer(stream_).expires_never();  // from here on the stream has its own deadlines
   std::make_shared<WsSession<Stream>>(std::move(stream_), context_, std::move(peer_), request_.role)

@@ -51,7 +51,7 @@ class MapStage {
   struct Item {
     std::optional<View> view;  // as odometry has it; or ...
     std::optional<PathCorrection> correction;
-    std::uint64_t number = 0;  // of the correction
+    std::uint64_t number = 0;       // of the correction
     std::optional<MapBegin> begin;  // ... begin this map, then open `begun`
     std::shared_ptr<std::promise<void>> begun;
   };

@@ -148,7 +148,9 @@ std::optional<StoredView> MapStore::view(std::int64_t number) const {
   return read_view(state_->file.database(), number);
 }
 
-std::vector<std::int64_t> MapStore::view_numbers() const { return read_view_numbers(state_->file.database()); }
+std::vector<std::int64_t> MapStore::view_numbers() const {
+  return read_view_numbers(state_->file.database());
+}
 
 void MapStore::commit() { state_->commit(); }
 void MapStore::rollback() { state_->rollback(); }

@@ -11,10 +11,10 @@ namespace {
 
 StreamClose bad_frame(std::string reason) { return {kCloseBadFrame, std::move(reason)}; }
 
-/// Why a page of this map must begin anew; null if it may go on from what it has. After a kill it may hold tiles
-/// and poses that were never stored. A continued map begins above all revisions that could have been sent
-/// (server/commands/continued_map.cpp), where the store could tell; where it could not, they are above the
-/// map's.
+/// Why a page of this map must begin anew; null if it may go on from what it has. After a kill it may hold
+/// tiles and poses that were never stored. A continued map begins above all revisions that could have been
+/// sent (server/commands/continued_map.cpp), where the store could tell; where it could not, they are above
+/// the map's.
 const char* why_begin_anew(const Resume& known, const ServedMap& map) {
   if (known.revision > map.revision()) return "what you have seen was never stored";
   const bool all_newer = known.revision > 0 && known.revision < map.board().oldest_revision().value_or(0);

@@ -51,7 +51,8 @@ void add_stored_maps(Hub& hub, const std::string& folder) {
     if (entry.path().extension() != ".flog") continue;
     const std::string name = entry.path().stem().string();
     if (name == "live") {
-      throw UsageError(entry.path().string() + ": 'live' is the name of the map that is being made; rename it");
+      throw UsageError(entry.path().string() +
+                       ": 'live' is the name of the map that is being made; rename it");
     }
     hub.add_stored_map(name, begin_of(load_input(entry.path()), "stored"));
   }

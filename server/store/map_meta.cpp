@@ -117,10 +117,10 @@ void write_level(const SqliteDatabase& database, const HandLevel& level) {
 }
 
 void write_seal(const SqliteDatabase& database, const MapSeal& seal) {
-  const Json json{{"revision", seal.revision},   {"clean", seal.clean},         {"behind", seal.behind},
-                  {"num_tiles", seal.num_tiles},
-                  {"tiles_sum", seal.tiles_sum}, {"num_poses", seal.num_poses}, {"poses_sum", seal.poses_sum},
-                  {"num_views", seal.num_views}, {"views_sum", seal.views_sum}};
+  const Json json{
+      {"revision", seal.revision},   {"clean", seal.clean},         {"behind", seal.behind},
+      {"num_tiles", seal.num_tiles}, {"tiles_sum", seal.tiles_sum}, {"num_poses", seal.num_poses},
+      {"poses_sum", seal.poses_sum}, {"num_views", seal.num_views}, {"views_sum", seal.views_sum}};
   write_text(database, "seal", json.dump());
 }
 

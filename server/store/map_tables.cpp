@@ -25,8 +25,7 @@ void MapTables::replace_all(const StoredMap& map) {
   check_header(map);
   database_.execute("DELETE FROM meta; DELETE FROM tiles; DELETE FROM trajectory; DELETE FROM views");
   write_header(database_, map);
-  resume({.revision = map.revision, .clean = seal_.clean, .behind = map.behind},
-         map.info.grid.num_layers());
+  resume({.revision = map.revision, .clean = seal_.clean, .behind = map.behind}, map.info.grid.num_layers());
   put_tiles(map.tiles);
   append_trajectory(map.trajectory);
   for (const SharedView& view : map.views) put_view(*view);

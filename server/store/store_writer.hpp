@@ -87,8 +87,8 @@ class StoreWriter {
   StoreMailbox mailbox_;
   StoreState state_;
   std::size_t tiles_in_work_ = 0;  // taken out of the mailbox, neither committed nor refused yet
-  std::uint64_t posted_ = 0;    // number of the newest mail ...
-  std::uint64_t answered_ = 0;  // ... and of the newest that was committed or refused
+  std::uint64_t posted_ = 0;       // number of the newest mail ...
+  std::uint64_t answered_ = 0;     // ... and of the newest that was committed or refused
   bool hurry_ = false;
 
   std::jthread thread_;  // last: it ends before anything it uses

@@ -1,4 +1,5 @@
-// Killed between a corrected path and the tiles that follow it, the map goes on with walls where the path says.
+// Killed between a corrected path and the tiles that follow it, the map goes on with walls where the path
+// says.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -107,7 +108,8 @@ TEST(ContinuedMap, KilledBeforeTheTilesFollowedTheCorrectedPathTheyAreBuiltAnewF
   EXPECT_FALSE(whole.behind);
   const StoredMap behind = load_map(store.killed());
   ASSERT_TRUE(behind.behind);
-  EXPECT_GT(share_found(tiles_of(load_settled_map(store.killed())), tiles_of(whole)), 0.98);  // only to look at
+  EXPECT_GT(share_found(tiles_of(load_settled_map(store.killed())), tiles_of(whole)),
+            0.98);  // only to look at
   EXPECT_TRUE(load_map(store.killed()).behind);
   MapStore again(store.killed());
   const std::optional<StoredMap> taken_up = take_up(again, coarse_map(2));
@@ -118,7 +120,8 @@ TEST(ContinuedMap, KilledBeforeTheTilesFollowedTheCorrectedPathTheyAreBuiltAnewF
   EXPECT_LT(share_found(tiles_of(behind), tiles_of(whole)), 0.95);  // else nothing was wrong
   EXPECT_GT(share_found(tiles_of(*taken_up), tiles_of(whole)), 0.98);
   EXPECT_GT(share_found(tiles_of(whole), tiles_of(*taken_up)), 0.98);
-  EXPECT_EQ(testing::difference(load_map(store.killed()), *taken_up), "");  // at once, not when mapping goes on
+  EXPECT_EQ(testing::difference(load_map(store.killed()), *taken_up),
+            "");  // at once, not when mapping goes on
 }
 
 }  // namespace

@@ -141,8 +141,8 @@ void check_reply(const YAML::Node& document, const YAML::Node& operation, const 
 
 using Answers = std::set<std::tuple<std::string, std::string, std::string>>;
 
-/// Not to be had from this program by a request: the opened stream, starting, draining and being overrun (tested
-/// elsewhere), an empty map, a source that cannot be moved or reset, a map whose views are gone.
+/// Not to be had from this program by a request: the opened stream, starting, draining and being overrun
+/// (tested elsewhere), an empty map, a source that cannot be moved or reset, a map whose views are gone.
 bool out_of_reach(const std::string& method, const std::string& path, const std::string& status) {
   if (path.starts_with("/api/v1/calibrate") && status != "404") return true;  // of `flogmap calibrate` alone
   return status == "101" || status == "503" || status == "429" || status == "default" ||
@@ -268,8 +268,8 @@ TEST_F(Contract, TenWrongTokensAreEnoughForAMinute) {
 
 TEST(Program, EndsWithinTenSecondsAndSaysGoodbye) {
   const testing::TemporaryFolder folder;
-  RunningProgram program({"--source", "sim:" + folder.write("scene.json", testing::kSmallScene).string(), "--store",
-                          (folder.path() / "map.flog").string()});
+  RunningProgram program({"--source", "sim:" + folder.write("scene.json", testing::kSmallScene).string(),
+                          "--store", (folder.path() / "map.flog").string()});
   const auto ready = [&] { return http(program.port(), "GET", "/readyz").status == 200; };
   for (int i = 0; i < 600 && !ready(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   StreamClient reads(program.port()), stalls(program.port());

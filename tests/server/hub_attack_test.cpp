@@ -138,7 +138,8 @@ TEST_F(Attack, OneWhoDoesNotReadItsAnswersIsCutOffAfterTenSeconds) {
   const std::size_t answer_bytes = http(server_.port(), "GET", "/openapi.yaml").body.size();
   constexpr std::size_t kAnswers = 1500;  // more than the system's buffers hold
   RawConnection connection(server_.port());
-  for (std::size_t i = 0; i < kAnswers; ++i) connection.send("GET /openapi.yaml HTTP/1.1\r\n" + host() + "\r\n");
+  for (std::size_t i = 0; i < kAnswers; ++i)
+    connection.send("GET /openapi.yaml HTTP/1.1\r\n" + host() + "\r\n");
   std::this_thread::sleep_for(milliseconds(11'000));
   EXPECT_LT(connection.read_to_end().size(), kAnswers * answer_bytes / 2);
 }

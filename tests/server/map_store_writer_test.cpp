@@ -51,7 +51,8 @@ TEST(StoreMailbox, ANewMapReplacesWhatWasWaiting) {
 }
 
 PathRewrite rewrite_of(std::uint64_t number, const std::vector<TrajectoryEntry>& path) {
-  return {.number = number, .path = path, .level = {.yaw_rad = 0.1 * static_cast<double>(number)}, .reason = {}};
+  return {
+      .number = number, .path = path, .level = {.yaw_rad = 0.1 * static_cast<double>(number)}, .reason = {}};
 }
 
 TEST(StoreMailbox, ARewrittenPathReplacesThePosesThatWereWaiting) {

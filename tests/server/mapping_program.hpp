@@ -23,7 +23,7 @@ inline constexpr auto kPatience = std::chrono::seconds(60);
 
 /// A small scene walked through without end, its map kept beside it.
 inline std::vector<std::string> mapping_into(const std::filesystem::path& store,
-                                      const std::filesystem::path& folder) {
+                                             const std::filesystem::path& folder) {
   std::ofstream(folder / "scene.json") << testing::kSmallScene;
   return {"--source", "sim:" + (folder / "scene.json").string(), "--pace", "fast", "--store", store.string()};
 }

@@ -1,4 +1,5 @@
-// The running program and a disk that takes nothing: full or read-only, from the start or from some moment on.
+// The running program and a disk that takes nothing: full or read-only, from the start or from some moment
+// on.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <linux/capability.h>
@@ -131,8 +132,9 @@ TEST(DiskAtTheStart, ThatIsFullUntilAKillLeavesNoRevisionThatComesAgain) {
   EXPECT_EQ(testing::difference(load_map(store), before), "");
   const RunningProgram program(mapping_into(store, folder.path()));
   ASSERT_TRUE(wait_until([&] { return is_ready(program); }));
-  const HttpReply reply = http(program.port(), "GET",
-                               "/api/v1/maps/live/changes?epoch=" + before.epoch + "&since=" + std::to_string(seen));
+  const HttpReply reply =
+      http(program.port(), "GET",
+           "/api/v1/maps/live/changes?epoch=" + before.epoch + "&since=" + std::to_string(seen));
   EXPECT_TRUE(revision_of(program) > seen || reply.status == 409) << reply.status;
 }
 
