@@ -16,7 +16,7 @@ flogmap_test(outbox_tests SOURCES outbox_law_test.cpp LINK tile_mirror board pro
 flogmap_target(loopback_hub SOURCES loopback_hub.cpp PUBLIC hub PRIVATE network_libraries)
 flogmap_target(bad_network SOURCES cutting_proxy.cpp raw_stream.cpp test_certificate.cpp
                PRIVATE network_libraries OpenSSL::Crypto)
-flogmap_test(hub_tests SOURCES hub_access_test.cpp hub_http_test.cpp hub_stream_test.cpp
+flogmap_test(hub_tests SOURCES hub_access_test.cpp hub_batch_test.cpp hub_http_test.cpp hub_stream_test.cpp openapi_test.cpp
              LINK loopback_hub client_frames synthetic_walk tile_mirror hub proto nlohmann_json::nlohmann_json)
 flogmap_test(hub_attack_tests SOURCES hub_attack_test.cpp hub_frame_attack_test.cpp hub_proxy_test.cpp hub_tls_test.cpp
              LINK bad_network loopback_hub client_frames synthetic_walk tile_mirror hub network_libraries
