@@ -86,7 +86,7 @@ struct MapStore::State {
       tables.set_clean(true);
       commit();
       file.database().execute("PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE");
-    } catch (const SqliteError&) {
+    } catch (const std::runtime_error&) {
       return;
     }
   }

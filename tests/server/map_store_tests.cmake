@@ -1,6 +1,7 @@
 # The map on disk and its exports.
 flogmap_test(map_store_tests
   SOURCES
+    map_store_disk_test.cpp
     map_store_file_test.cpp
     map_store_kill_test.cpp
     map_store_live_test.cpp
