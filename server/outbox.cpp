@@ -12,6 +12,7 @@ using std::chrono::nanoseconds;
 
 constexpr std::size_t kSortedAhead = 256;  // more than a batch holds
 constexpr std::uint64_t kTypicalLayerBytes = 1500;
+constexpr std::size_t kTrajectoryEntryBytes = 80;
 
 /// Between once an hour and 1000 Hz: the inverse of less is more nanoseconds than there are.
 std::chrono::nanoseconds interval_of(double hz) {
@@ -86,12 +87,7 @@ void Outbox::forget(const std::vector<TileKey>& keys, const ServedMap& map) {
   }
 }
 
-bool Outbox::acknowledge(std::uint64_t bytes, Time now) {
-  if (bytes > sent_bytes_) return false;
-  if (bytes > acknowledged_bytes_) owed_since_ = now;
-  acknowledged_bytes_ = std::max(acknowledged_bytes_, bytes);
-  return true;
-}
+bool Outbox::acknowledge(std::uint64_t bytes, Time now) { return window_.acknowledge(bytes, now); }
 
 void Outbox::changed(std::span<const Slot> slots) {
   if (!subscribed_) return;  // the snapshot will have them
@@ -173,10 +169,6 @@ void Outbox::sort_round(const ServedMap& map) {
                  [](const Candidate& c) { return c.slot; });
 }
 
-bool Outbox::window_open() const {
-  return unacknowledged() + limits_.max_batch_bytes <= limits_.max_unacknowledged_bytes;
-}
-
 Bytes Outbox::next(ServedMap& map, Time now) {
   if (Bytes message = next_control()) return message;
   if (Bytes message = next_pose(now)) return message;
@@ -196,27 +188,34 @@ Bytes Outbox::next_control() {
 
 Bytes Outbox::next_pose(Time now) {
   if (pose_ && !pose_interval_) pose_ = nullptr;
+  const bool behind = window_.behind(now);  // these are not acknowledged: nothing else would hold them back
   if (pose_ && now >= next_pose_) {
     next_pose_ += *pose_interval_;
     if (next_pose_ <= now) next_pose_ = now + *pose_interval_;
+    if (behind) next_pose_ += kPosesSkippedBehind * *pose_interval_;
     return std::exchange(pose_, nullptr);
   }
-  if (features_ && !pose_) return std::exchange(features_, nullptr);
+  if (features_ && !pose_ && !behind) return std::exchange(features_, nullptr);
   if (status_) return std::exchange(status_, nullptr);
   return std::exchange(playback_, nullptr);
 }
 
+/// Of the size that the line takes at a time.
+std::size_t Outbox::trajectory_part() const {
+  return std::clamp<std::size_t>(window_.batch_bytes() / kTrajectoryEntryBytes, 1, kTrajectoryPart);
+}
+
 Bytes Outbox::next_trajectory(ServedMap& map, Time now) {
-  const std::size_t length = map.trajectory().size();
+  const std::size_t length = map.trajectory().size(), part = trajectory_part();
   if (rewrite_reason_) {
-    trajectory_sent_ = std::min(length, kTrajectoryPart);
+    trajectory_sent_ = std::min(length, part);
     const std::string reason = *std::exchange(rewrite_reason_, std::nullopt);
     return map.trajectory_message(0, trajectory_sent_, &reason);
   }
   const std::size_t first = trajectory_sent_;
   if (first >= length) return nullptr;
-  const std::size_t count = std::min(length - first, kTrajectoryPart);
-  if (now < next_trajectory_ && count < kTrajectoryPart) return nullptr;
+  const std::size_t count = std::min(length - first, part);
+  if (now < next_trajectory_ && count < part) return nullptr;
   next_trajectory_ = now + kTrajectoryInterval;
   trajectory_sent_ += count;
   return map.trajectory_message(first, count, nullptr);
@@ -226,14 +225,14 @@ Bytes Outbox::next_tiles(ServedMap& map, Time now) {
   begin_round(map, now);
   Bytes message;
   if (!round_.empty()) {
-    if (!window_open()) return nullptr;
+    if (!window_.open()) return nullptr;
     std::vector<Slot> slots;
     std::size_t size = 64;
     while (!round_.empty()) {
       if (num_sorted_ == 0) sort_round(map);
       const Slot slot = round_.back();
       size += map.board().exists(slot) ? map.board().message_size(slot, choice_) : 32;
-      if (!slots.empty() && size > limits_.max_batch_bytes) break;
+      if (!slots.empty() && size > window_.batch_bytes()) break;
       slots.push_back(slot);
       needs_[slot] = Need::none;
       round_.pop_back();
@@ -242,7 +241,7 @@ Bytes Outbox::next_tiles(ServedMap& map, Time now) {
     // What changed meanwhile either was still to come in this round, and came as it now is, or waits.
     if (round_.empty() && waiting_.empty()) round_revision_ = map.revision();
     message = map.tile_batch(round_revision_, round_.empty(), slots, choice_);
-    count_sent(message, now);
+    window_.sent(message->size(), now);
   }
   if (in_snapshot_ && round_.empty()) {
     in_snapshot_ = false;
@@ -254,17 +253,12 @@ Bytes Outbox::next_tiles(ServedMap& map, Time now) {
 Bytes Outbox::next_image(Time now) {
   for (Bytes& image : images_) {
     if (!image) continue;
-    const bool fits = unacknowledged() + image->size() <= limits_.max_unacknowledged_bytes;
+    const bool fits = unacknowledged() + image->size() <= window_.bytes();
     if (!fits && unacknowledged() > 0) return nullptr;  // one that never fits goes alone
-    count_sent(image, now);
+    window_.sent(image->size(), now);
     return std::exchange(image, nullptr);
   }
   return nullptr;
-}
-
-void Outbox::count_sent(const Bytes& message, Time now) {
-  if (unacknowledged() == 0) owed_since_ = now;
-  sent_bytes_ += message->size();
 }
 
 std::optional<Outbox::Time> Outbox::next_at(const ServedMap& map) const {
@@ -272,14 +266,13 @@ std::optional<Outbox::Time> Outbox::next_at(const ServedMap& map) const {
   const auto consider = [&](Time time) { earliest = earliest ? std::min(*earliest, time) : time; };
   if (pose_ && pose_interval_) consider(next_pose_);
   if (subscribed_ && trajectory_sent_ < map.trajectory().size()) consider(next_trajectory_);
-  if (subscribed_ && !waiting_.empty() && window_open()) consider(next_round_);
+  if (subscribed_ && !waiting_.empty() && window_.open()) consider(next_round_);
   return earliest;
 }
 
-bool Outbox::overdue(Time now) const { return unacknowledged() > 0 && now - owed_since_ >= kAckDeadline; }
-
 std::size_t Outbox::memory_bytes() const {
   std::size_t bytes = needs_.capacity() + (waiting_.capacity() + round_.capacity()) * sizeof(Slot);
+  bytes += window_.memory_bytes();
   for (const Bytes& message : controls_) bytes += message->size();
   for (const Bytes& message : {pose_, features_, status_, playback_}) bytes += message ? message->size() : 0;
   for (const Bytes& image : images_) bytes += image ? image->size() : 0;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/client_message.hpp"
+#include "server/send_window.hpp"
 #include "server/served_map.hpp"
 #include "server/wire.hpp"
 
@@ -26,10 +27,10 @@ class Outbox {
   static constexpr std::size_t kMaxControls = 64;
   static constexpr std::chrono::milliseconds kChangeInterval{100};  // changes at no more than 10 Hz
   static constexpr std::chrono::milliseconds kTrajectoryInterval{200};
-  static constexpr std::size_t kTrajectoryPart = 1024;  // entries in one message
-  static constexpr std::chrono::seconds kAckDeadline{30};
+  static constexpr std::size_t kTrajectoryPart = 1024;  // entries in one message, at most
+  static constexpr int kPosesSkippedBehind = 3;         // of four, while answers are late
 
-  explicit Outbox(WireLimits limits = {}) : limits_(limits) {}
+  explicit Outbox(WireLimits limits = {}) : window_(limits) {}
 
   // What the client says.
   void resume(const Resume& known, const ServedMap& map);
@@ -58,14 +59,14 @@ class Outbox {
   [[nodiscard]] std::optional<Time> next_at(const ServedMap& map) const;
 
   /// It has owed an Ack for 30 s.
-  [[nodiscard]] bool overdue(Time now) const;
+  [[nodiscard]] bool overdue(Time now) const { return window_.overdue(now); }
 
   [[nodiscard]] bool subscribed() const { return subscribed_; }
   [[nodiscard]] bool wants_pose() const { return pose_interval_.has_value(); }
   [[nodiscard]] bool holds_image(ImageStream stream) const {
     return images_[static_cast<int>(stream)] != nullptr;
   }
-  [[nodiscard]] std::uint64_t unacknowledged() const { return sent_bytes_ - acknowledged_bytes_; }
+  [[nodiscard]] std::uint64_t unacknowledged() const { return window_.unacknowledged(); }
   [[nodiscard]] std::size_t num_pending() const { return waiting_.size() + round_.size(); }
   [[nodiscard]] std::size_t memory_bytes() const;
 
@@ -77,15 +78,14 @@ class Outbox {
   void begin_round(const ServedMap& map, Time now);
   void sort_round(const ServedMap& map);
   [[nodiscard]] bool visible(const ServedMap& map, Slot slot) const;
-  [[nodiscard]] bool window_open() const;
+  [[nodiscard]] std::size_t trajectory_part() const;
   Bytes next_control();
   Bytes next_pose(Time now);
   Bytes next_trajectory(ServedMap& map, Time now);
   Bytes next_tiles(ServedMap& map, Time now);
   Bytes next_image(Time now);
-  void count_sent(const Bytes& message, Time now);
 
-  WireLimits limits_;
+  SendWindow window_;
   bool subscribed_ = false;
   TileChoice choice_;
   std::optional<Viewport> viewport_;
@@ -108,10 +108,6 @@ class Outbox {
   std::size_t trajectory_sent_ = 0;
   std::optional<std::string> rewrite_reason_;  // the whole trajectory is due
   Time next_trajectory_{};
-
-  std::uint64_t sent_bytes_ = 0;
-  std::uint64_t acknowledged_bytes_ = 0;
-  Time owed_since_{};
 };
 
 }  // namespace flogmap

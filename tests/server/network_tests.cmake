@@ -11,7 +11,7 @@ flogmap_target(make_wire_samples EXECUTABLE SOURCES make_wire_samples.cpp PRIVAT
 flogmap_test(wire_tests SOURCES wire_golden_test.cpp LINK wire_samples board proto nlohmann_json::nlohmann_json)
 
 flogmap_target(tile_mirror SOURCES tile_mirror.cpp PUBLIC board PRIVATE proto)
-flogmap_test(outbox_tests SOURCES outbox_law_test.cpp LINK tile_mirror board proto)
+flogmap_test(outbox_tests SOURCES outbox_law_test.cpp send_window_test.cpp LINK tile_mirror board proto)
 
 flogmap_target(loopback_hub SOURCES loopback_hub.cpp PUBLIC hub PRIVATE network_libraries)
 flogmap_target(bad_network SOURCES cutting_proxy.cpp raw_stream.cpp test_certificate.cpp

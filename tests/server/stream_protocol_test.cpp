@@ -165,7 +165,10 @@ TEST_F(ProtocolTest, AfterAKillAViewerKeepsNothingThatWasNeverStored) {
     viewer.reconnect();
     protocol.receive(hello_frame(known), start_);
     protocol.receive(subscribe_frame({{{}, Planes::evidence}, {}, 0, false}), start_);
-    while (const Bytes bytes = next(protocol, start_)) viewer.take(*bytes);
+    while (const Bytes bytes = next(protocol, start_)) {
+      viewer.take(*bytes);
+      protocol.receive(ack_frame(viewer.batch_bytes()), start_);
+    }
   };
   talk({});
   ASSERT_EQ(difference(viewer, *state_.live, {{}, Planes::evidence}), "");

@@ -1,0 +1,67 @@
+// How much may be on the way to one client. No sockets, no clock: the time is told.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+#include "server/wire.hpp"
+
+namespace flogmap {
+
+/// Learns from the acknowledgements how much a line and its page take in about a second, and lets no more be
+/// under way: what is sent after it would wait that long. It starts small, grows with every quick answer while it
+/// is made use of, and when answers are late it becomes what was taken in lately in half a second. So a slow page
+/// soon hears something, a pose is never far behind, and no message keeps a line so long that it is taken for dead.
+class SendWindow {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+  using Duration = std::chrono::steady_clock::duration;
+
+  static constexpr std::uint64_t kFirstBytes = 64U << 10U;
+  static constexpr std::uint64_t kLeastBytes = 16U << 10U;
+  static constexpr std::uint64_t kBatchesOnTheWay = 4;
+  // Beyond the quickest answer so far, which is the way there and back.
+  static constexpr std::chrono::milliseconds kQuick{300};
+  static constexpr std::chrono::milliseconds kAimed{500};
+  static constexpr std::chrono::milliseconds kLate{900};
+  static constexpr std::chrono::seconds kAckDeadline{30};
+
+  explicit SendWindow(WireLimits limits);
+
+  void sent(std::size_t bytes, Time now);
+  /// `total`: of all bytes since the connection began. False if that is more than was sent.
+  bool acknowledge(std::uint64_t total, Time now);
+
+  [[nodiscard]] std::uint64_t unacknowledged() const { return sent_ - acknowledged_; }
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  /// The size that a message may have now: one of about four on the way.
+  [[nodiscard]] std::size_t batch_bytes() const;
+  /// One more of that size may be sent.
+  [[nodiscard]] bool open() const { return unacknowledged() + batch_bytes() <= bytes_; }
+  /// An answer is late: what can wait had better wait.
+  [[nodiscard]] bool behind(Time now) const;
+  /// Nothing acknowledged for 30 s, though something is owed.
+  [[nodiscard]] bool overdue(Time now) const;
+  [[nodiscard]] std::size_t memory_bytes() const { return on_the_way_.size() * sizeof(Message); }
+
+ private:
+  struct Message {
+    std::uint64_t end;  // sum of all bytes up to its last
+    Time sent_at;
+    std::uint64_t acknowledged_then;
+  };
+
+  void learn(const Message& answered, std::uint64_t was_on_the_way, std::uint64_t newly, Time now);
+
+  WireLimits limits_;
+  std::uint64_t bytes_;
+  std::uint64_t sent_ = 0;
+  std::uint64_t acknowledged_ = 0;
+  std::deque<Message> on_the_way_;  // oldest first
+  Duration quickest_ = Duration::max();
+  Time owed_since_{};
+};
+
+}  // namespace flogmap
