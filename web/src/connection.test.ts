@@ -1,6 +1,6 @@
 import { create, fromBinary } from '@bufbuild/protobuf';
 import { beforeEach, describe, expect, it } from 'vitest';
-import { BACK_OFF_MS, Connection, DEAD_AFTER_MS, LAGGING_FROM_MS, PING_EVERY_MS, type Clock, type ConnectionState, type Socket } from './connection';
+import { BACK_OFF_MS, Connection, DEAD_AFTER_MS, LAGGING_FROM_MS, MAX_REST_MS, PING_EVERY_MS, type Clock, type ConnectionState, type Socket } from './connection';
 import type { StreamEvent } from './decode';
 import { ClientMessageSchema, PongSchema, ResetSchema, SnapshotBeginSchema, SnapshotEndSchema, WelcomeSchema, GoodbyeSchema, type ClientMessage } from './gen/flogmap/v1/stream_pb';
 
@@ -48,6 +48,7 @@ let clock: FakeClock;
 let sockets: FakeSocket[];
 let numbers: number[];
 let connection: Connection;
+let rest: number; // that the page wants before it asks for more
 let states: ConnectionState[];
 
 beforeEach(() => {
@@ -55,11 +56,13 @@ beforeEach(() => {
   sockets = [];
   numbers = [];
   states = [];
+  rest = 0;
   connection = new Connection({
     openSocket: () => sockets[sockets.push(new FakeSocket()) - 1] as FakeSocket,
     decode: (_bytes, number) => numbers.push(number),
     clock,
     trajectoryLength: () => 5,
+    restMs: () => rest,
   });
   connection.stateChanged.on((state) => states.push(state));
 });
@@ -121,6 +124,25 @@ describe('connection', () => {
     hear(tiles(1n, false), 100);
     hear(tiles(2n, true), 50);
     expect(socket().last('ack')).toMatchObject({ rev: 2n, bytes: 150n });
+  });
+
+  it('asks for more only after a rest while drawing is behind, but not before the map is here', () => {
+    connection.start();
+    socket().onopen?.(new Event('open'));
+    rest = 5000;
+    hear(welcome('a'));
+    hear(tiles(1n, true), 100);
+    expect(socket().last('ack')).toMatchObject({ bytes: 100n });
+    hear(end(1n));
+    hear(tiles(2n, false), 50);
+    clock.pass(MAX_REST_MS - 1);
+    hear(tiles(3n, true), 50);
+    expect(socket().last('ack')).toMatchObject({ bytes: 100n });
+    clock.pass(1);
+    expect(socket().last('ack')).toMatchObject({ rev: 3n, bytes: 200n }); // one for all
+    rest = 0;
+    hear(tiles(4n, true), 50);
+    expect(socket().last('ack')).toMatchObject({ bytes: 250n });
   });
 
   it('backs off longer after every failure and starts over after a success', () => {

@@ -12,6 +12,7 @@ export const PING_EVERY_MS = 2000;
 export const LAGGING_FROM_MS = 700; // twice in a row: a busy page answers late now and then
 export const LIVE_BELOW_MS = 500;
 export const DEAD_AFTER_MS = 12000; // without a byte from the server
+export const MAX_REST_MS = 600; // before an Ack: above it the server would take the line for a slow one
 export const BACK_OFF_MS = [500, 1000, 2000, 4000, 8000, 15000] as const;
 
 export type ConnectionState =
@@ -42,6 +43,8 @@ export interface ConnectionParts {
   clock: Clock;
   /** Tiles and trajectory points that the page holds of `epoch`. */
   trajectoryLength(): number;
+  /** How long to wait before asking for more, ms: a page that cannot keep up with drawing gets fewer and newer tiles. */
+  restMs(): number;
 }
 
 type ClientMessageInit = NonNullable<MessageInitShape<typeof ClientMessageSchema>['message']>;
@@ -58,6 +61,8 @@ export class Connection {
   private epoch = '';
   private completeRev = 0n;
   private bytesTaken = 0;
+  private takenRev = 0n;
+  private cancelAck: (() => void) | null = null; // an Ack is due
   private totalBytes = 0;
   private snapshot = { total: 0, done: 0 };
   private lastHeard = 0;
@@ -87,7 +92,7 @@ export class Connection {
     this.dropSocket();
     if (this.current.phase !== 'offline') this.enter({ phase: 'connecting' });
     const number = ++this.number;
-    Object.assign(this, { bytesTaken: 0, farewell: null, watchDue: 0, late: false, lastHeard: this.parts.clock.now() });
+    Object.assign(this, { bytesTaken: 0, takenRev: 0n, farewell: null, watchDue: 0, late: false, lastHeard: this.parts.clock.now() });
     this.ping = { nonce: 0n, sentAt: 0, open: false, roundTrip: 0 };
     const socket = this.parts.openSocket();
     socket.binaryType = 'arraybuffer';
@@ -114,8 +119,18 @@ export class Connection {
     this.events.emit(event);
     if (event.kind === 'tiles' || event.kind === 'image') {
       this.bytesTaken += size;
-      this.send({ case: 'ack', value: { rev: event.kind === 'tiles' ? event.rev : 0n, bytes: BigInt(this.bytesTaken) } });
+      if (event.kind === 'tiles') this.takenRev = event.rev;
+      const rest = this.current.phase === 'resuming' ? 0 : Math.min(MAX_REST_MS, this.parts.restMs());
+      if (rest <= 0) this.acknowledge();
+      else this.cancelAck ??= this.parts.clock.after(rest, () => this.acknowledge());
     }
+  }
+
+  /** Of all that came until now. */
+  private acknowledge(): void {
+    this.cancelAck?.();
+    this.cancelAck = null;
+    this.send({ case: 'ack', value: { rev: this.takenRev, bytes: BigInt(this.bytesTaken) } });
   }
 
   /** A frame that could not be read: better a fresh start than a map with holes. */
@@ -238,6 +253,8 @@ export class Connection {
   }
 
   private dropSocket(): void {
+    this.cancelAck?.();
+    this.cancelAck = null;
     if (!this.socket) return;
     this.socket.onopen = this.socket.onmessage = this.socket.onclose = null;
     this.socket.close();

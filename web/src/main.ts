@@ -20,6 +20,8 @@ import { keyText, TileStore } from './tile_store';
 import { levelFor, visibleRect } from './viewport';
 
 const POSE_HZ = 15;
+const SMOOTH_MS = 40; // for a picture
+const REST_PER_LATE = 3; // so much longer than drawing is behind, taking in tiles has to wait
 const LOOK_EVERY_MS = 300; // how often the server hears where we look
 
 const query = new URLSearchParams(location.search);
@@ -41,6 +43,7 @@ const connection = new Connection({
   decode: (bytes, number) => decoder.postMessage({ connection: number, bytes } satisfies DecodeRequest, [bytes]),
   clock: { now: () => Date.now(), after: (ms, action) => { const id = setTimeout(action, ms); return () => clearTimeout(id); } },
   trajectoryLength: () => live.trajectory.length,
+  restMs: () => (view.pacer.lateMs > SMOOTH_MS ? REST_PER_LATE * view.pacer.lateMs : 0),
 });
 decoder.onmessage = ({ data }: MessageEvent<DecodeAnswer>) => {
   if (data.event) connection.received(data.connection, data.size, data.event);
@@ -92,7 +95,7 @@ settings.watch(['theme'], applyTheme);
 settings.watch(['imageFps', 'imageWidth', 'showFeatures', 'showRight'], ({ imageFps, imageWidth, showFeatures, showRight }) => {
   const streams = [ImageStream.LEFT, ImageStream.DISPARITY, ...(showRight ? [ImageStream.RIGHT] : [])];
   const images = imageFps > 0 ? streams.map((stream) => ({ stream, maxFps: imageFps, maxWidth: imageWidth })) : [];
-  connection.subscribe({ planes: Planes.EVIDENCE, images, poseHz: POSE_HZ, features: showFeatures });
+  connection.subscribe({ planes: Planes.EVIDENCE, images, poseHz: POSE_HZ, features: showFeatures && images.length > 0 });
 });
 
 let looking = 0;

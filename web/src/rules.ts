@@ -85,19 +85,25 @@ export function seenFromConfidence(minRays: number, fullConfidenceRays: number):
   return Math.max(0.5 / 255, exact - 0.5 / 255);
 }
 
+/** Chosen by STYLE and OPERATORS, indices into the lists above: a shader without branches is several times as quick. */
 export const RULES_GLSL = /* glsl */ `
-uniform int uStyle;      // index into STYLES
-uniform int uOperators;  // index into OPERATORS
-
 float fuzzyAnd(float a, float b) {
-  if (uOperators == 1) return min(a, b);
-  if (uOperators == 2) return max(0.0, a + b - 1.0);
+#if OPERATORS == 1
+  return min(a, b);
+#elif OPERATORS == 2
+  return max(0.0, a + b - 1.0);
+#else
   return a * b;
+#endif
 }
 float fuzzyOr(float a, float b) {
-  if (uOperators == 1) return max(a, b);
-  if (uOperators == 2) return min(1.0, a + b);
+#if OPERATORS == 1
+  return max(a, b);
+#elif OPERATORS == 2
+  return min(1.0, a + b);
+#else
   return a + b - a * b;
+#endif
 }
 float mapValue(float E, float O, float K) {
   float I = fuzzyAnd(1.0 - E, 1.0 - O);
@@ -111,16 +117,26 @@ float motionValue(float E, float O, float K) {
 }
 float conflictValue(vec4 c) { return 2.0 * min(c.r, c.g) * c.b; }
 float styleValue(vec4 c) {  // c: E, O, K, C
-  if (uStyle == 0) return mapValue(c.r, c.g, c.b);
-  if (uStyle == 1) return fuzzyAnd(c.g, c.b);
-  if (uStyle == 2) return motionValue(c.r, c.g, c.b);
-  if (uStyle == 3) return c.r;
-  if (uStyle == 4) return c.b;
-  if (uStyle == 5) return conflictValue(c);
+#if STYLE == 0
+  return mapValue(c.r, c.g, c.b);
+#elif STYLE == 1
+  return fuzzyAnd(c.g, c.b);
+#elif STYLE == 2
+  return motionValue(c.r, c.g, c.b);
+#elif STYLE == 3
+  return c.r;
+#elif STYLE == 4
+  return c.b;
+#elif STYLE == 5
+  return conflictValue(c);
+#else
   return c.a;
+#endif
 }
 float classValue(vec4 c) {  // what the threshold is compared with: K does not decide in the first two styles
-  if (uStyle < 2) c.b = 1.0;
+#if STYLE < 2
+  c.b = 1.0;
+#endif
   return styleValue(c);
 }
 `;

@@ -64,7 +64,7 @@ describe('tile store', () => {
     const store = new TileStore(1e9);
     for (const one of [tile(0, 0, 0, 1), tile(0, 1, 0, 1), tile(1, 0, 0, 1), tile(0, 2, 0, 1), tile(2, 0, 0, 1)]) store.apply(one);
     const rect = { xMin: -100, yMin: -100, xMax: 100, yMax: 100 };
-    expect(tilesToDraw(store, rect, 1, 0.02).map(keyText)).toEqual(['2/0/0', '1/0/0', '0/2/0']);
+    expect(tilesToDraw(store, rect, 1, 0.02).map(keyText)).toEqual(['0/2/0', '1/0/0', '2/0/0']);
     expect(tilesToDraw(store, { xMin: 50, yMin: 50, xMax: 60, yMax: 60 }, 1, 0.02)).toEqual([]);
   });
 

@@ -1,6 +1,6 @@
 // The colours of the map, computed on the graphics card from evidence, rules and palette. The rules are rules.ts's.
 
-import { Color, DataTexture, GLSL3, NearestFilter, RGBAFormat, ShaderMaterial, UnsignedByteType, type DataArrayTexture } from 'three';
+import { Color, DataTexture, GLSL3, LessDepth, NearestFilter, RGBAFormat, ShaderMaterial, UnsignedByteType, type DataArrayTexture } from 'three';
 import type { MapInfo } from '../gen/flogmap/v1/map_pb';
 import { classColours, layerColour, rampTexels, type Rgb, type Theme } from '../palette';
 import { CONFLICT_MARK, OPERATORS, RULES_GLSL, seenFromConfidence, STYLES } from '../rules';
@@ -19,8 +19,7 @@ export function mapUniforms(): MapUniforms {
   const ramp = new DataTexture(rampTexels('cividis'), 256, 1, RGBAFormat, UnsignedByteType);
   ramp.minFilter = ramp.magFilter = NearestFilter;
   return {
-    uStyle: { value: 0 }, uOperators: { value: 0 }, uLayers: { value: 0 }, uThreshold: { value: 0.3 }, uConflictMark: { value: CONFLICT_MARK },
-    uClasses: { value: false }, uByHeight: { value: false }, uMarkConflict: { value: true }, uRamp: { value: ramp },
+    uThreshold: { value: 0.3 }, uConflictMark: { value: CONFLICT_MARK }, uByHeight: { value: false }, uRamp: { value: ramp },
     uWeights: { value: floats() }, uSeenFrom: { value: floats() }, uLayerColours: { value: Array.from({ length: MAX_LAYERS }, () => new Color()) },
     uUnknown: { value: new Color() }, uFree: { value: new Color() }, uOccupied: { value: new Color() }, uConflict: { value: new Color() },
     uHatch: { value: new Color() }, uPixelRatio: { value: 1 }, uQuiet: { value: 0 },
@@ -37,16 +36,23 @@ export const setUniform = (uniforms: MapUniforms, name: string, value: unknown):
   if (uniform) uniform.value = value;
 };
 
+/** What the tiles' shader is compiled for: these change by hand only. */
+export interface TileRules {
+  readonly [define: string]: number;
+}
+
+export function tileRules({ style, operators, classes, colourByHeight, markConflict }: Settings, info: MapInfo | null): TileRules {
+  return {
+    STYLE: STYLES.indexOf(style), OPERATORS: OPERATORS.indexOf(operators), LAYERS: Math.min(MAX_LAYERS, info?.layers.length ?? 0),
+    CLASSES: Number(classes), BY_HEIGHT: Number(colourByHeight), MARK_CONFLICT: Number(markConflict),
+  };
+}
+
 /** Writes the person's choices and the map's constants into the uniforms. */
 export function applySettings(uniforms: MapUniforms, settings: Settings, theme: Theme, info: MapInfo | null): void {
   const layers = info?.layers.slice(0, MAX_LAYERS) ?? [];
-  setUniform(uniforms, 'uStyle', STYLES.indexOf(settings.style));
-  setUniform(uniforms, 'uOperators', OPERATORS.indexOf(settings.operators));
-  setUniform(uniforms, 'uLayers', layers.length);
   setUniform(uniforms, 'uThreshold', settings.threshold);
-  setUniform(uniforms, 'uClasses', settings.classes);
   setUniform(uniforms, 'uByHeight', settings.colourByHeight);
-  setUniform(uniforms, 'uMarkConflict', settings.markConflict);
   const padded = (values: number[]): number[] => [...values, ...floats()].slice(0, MAX_LAYERS);
   setUniform(uniforms, 'uWeights', padded(layers.map(({ id }) => (layerSetting(settings, id).visible ? layerSetting(settings, id).opacity : 0))));
   setUniform(uniforms, 'uSeenFrom', padded(layers.map((layer) => seenFromConfidence(info?.minRays ?? 8, layer.fullConfidenceRays))));
@@ -88,14 +94,12 @@ ${COMMON}
 ${RULES_GLSL}
 uniform sampler2DArray uPlanes;
 uniform sampler2D uRamp;
-uniform int uLayers;
-uniform int uOnly;  // this layer alone, or -1 for all
+uniform int uOnly;  // with ONE_LAYER: this one
 uniform float uWeights[${MAX_LAYERS}];
 uniform float uSeenFrom[${MAX_LAYERS}];
 uniform vec3 uLayerColours[${MAX_LAYERS}];
 uniform vec3 uFree; uniform vec3 uOccupied; uniform vec3 uConflict;
 uniform float uThreshold; uniform float uConflictMark; uniform float uQuiet;
-uniform bool uClasses; uniform bool uByHeight; uniform bool uMarkConflict;
 in vec2 vCell;
 flat in float vSlot;
 out vec4 colour;
@@ -108,34 +112,54 @@ vec3 conflictHatch(vec3 under) {  // a lattice, so that it cannot be taken for t
 
 void main() {
   ivec2 cell = clamp(ivec2(vCell), ivec2(0), ivec2(63));
+  int slice = int(vSlot + 0.5) * LAYERS;
   float best = -1.0;
   float conflict = 0.0;
   bool seen = false;
   bool obstacle = false;
   int from = -1;
-  for (int k = 0; k < ${MAX_LAYERS}; ++k) {
-    if (k >= uLayers) break;
-    if (uWeights[k] <= 0.0 || (uOnly >= 0 && k != uOnly)) continue;
-    vec4 evidence = texelFetch(uPlanes, ivec3(cell, int(vSlot + 0.5) * uLayers + k), 0);
+  for (int k = 0; k < LAYERS; ++k) {
+    bool chosen = uWeights[k] > 0.0;
+#if ONE_LAYER
+    chosen = chosen && k == uOnly;
+#endif
+    if (!chosen) continue;
+    vec4 evidence = texelFetch(uPlanes, ivec3(cell, slice + k), 0);
     bool here = evidence.b >= uSeenFrom[k];
     seen = seen || here;
     float value = uWeights[k] * styleValue(evidence);
     if (value > best) { best = value; from = k; }
-    obstacle = obstacle || ((here || uStyle == 2) && uWeights[k] * classValue(evidence) >= uThreshold);
+#if CLASSES
+    obstacle = obstacle || ((here || STYLE == 2) && uWeights[k] * classValue(evidence) >= uThreshold);
+#endif
     conflict = max(conflict, conflictValue(evidence));
   }
-  bool covers = seen || (uStyle == 2 && from >= 0);
-  if (uOnly >= 0 && !seen) discard;
-  vec3 high = uByHeight && from >= 0 ? uLayerColours[max(from, 0)] : uOccupied;
-  vec3 shown = uClasses ? (obstacle ? high : uFree)
-    : uByHeight ? mix(uFree, high, clamp(best, 0.0, 1.0))
-    : texelFetch(uRamp, ivec2(int(clamp(best, 0.0, 1.0) * 255.0 + 0.5), 0), 0).rgb;
+#if ONE_LAYER
+  if (!seen) discard;
+#endif
+  bool covers = seen || (STYLE == 2 && from >= 0);
+#if BY_HEIGHT
+  vec3 high = from >= 0 ? uLayerColours[max(from, 0)] : uOccupied;
+#else
+  vec3 high = uOccupied;
+#endif
+#if CLASSES
+  vec3 shown = obstacle ? high : uFree;
+#elif BY_HEIGHT
+  vec3 shown = mix(uFree, high, clamp(best, 0.0, 1.0));
+#else
+  vec3 shown = texelFetch(uRamp, ivec2(int(clamp(best, 0.0, 1.0) * 255.0 + 0.5), 0), 0).rgb;
+#endif
   if (!covers) shown = unknownColour();
+#if STYLE == 2
   else if (!seen && mod(gl_FragCoord.x + gl_FragCoord.y, 8.0 * uPixelRatio) < uPixelRatio) shown = mix(shown, uUnknown, 0.55);
-  if (uMarkConflict && conflict >= uConflictMark) shown = conflictHatch(shown);
+#endif
+#if MARK_CONFLICT
+  if (conflict >= uConflictMark) shown = conflictHatch(shown);
+#endif
   float grey = dot(shown, vec3(0.3, 0.59, 0.11));
   shown = mix(shown, vec3(0.75 * grey), 0.7 * uQuiet);
-  colour = vec4(shown, uOnly >= 0 ? 0.55 : 1.0);
+  colour = vec4(shown, ONE_LAYER == 1 ? 0.55 : 1.0);
 }
 `;
 
@@ -151,18 +175,18 @@ void main() {  // coarser tiles lie a little lower, so that finer ones cover the
 }
 `;
 
-/** Paints the tiles of one page. */
-export function tileMaterial(uniforms: MapUniforms, page: DataArrayTexture): ShaderMaterial {
+/** Paints the tiles of one page; of `oneLayer` (uOnly) translucent. Finer tiles are drawn first: what is behind is not painted. */
+export function tileMaterial(uniforms: MapUniforms, page: DataArrayTexture, rules: TileRules, oneLayer: boolean): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { ...uniforms, uPlanes: { value: page } },
-    transparent: uniforms['uOnly']?.value !== -1,
+    defines: { ...rules, ONE_LAYER: Number(oneLayer) }, transparent: oneLayer, depthFunc: LessDepth,
   });
 }
 
-/** Paints what no tile covers: unknown, over the whole screen. */
+/** Paints what no tile covers: unknown, over the whole screen, after them. */
 export function groundMaterial(uniforms: MapUniforms): ShaderMaterial {
   return new ShaderMaterial({
-    glslVersion: GLSL3, depthTest: false, depthWrite: false, uniforms,
+    glslVersion: GLSL3, depthWrite: false, uniforms,
     vertexShader: 'void main() { gl_Position = vec4(position.xy * 2.0 - 1.0, 0.999, 1.0); }',
     fragmentShader: `${COMMON} out vec4 colour; void main() { colour = vec4(unknownColour(), 1.0); }`,
   });

@@ -10,21 +10,22 @@ import { classColours, cssColour, type Theme } from '../palette';
 import type { Settings } from '../settings';
 import { Signal, type Store } from '../signal';
 import type { TileKey } from '../tile_store';
-import { fit, pan, pixelsApart, towards, wrapAngle, zoomAt, type Point, type Viewport } from '../viewport';
+import { fit, pan, wrapAngle, zoomAt, type Point, type Viewport } from '../viewport';
 import { CameraMarker } from './camera_marker';
 import { FramePacer } from './frame_pacer';
+import { Glide } from './glide';
 import { GridLines } from './grid_lines';
-import { applySettings, groundMaterial, mapUniforms, setUniform, type MapUniforms } from './map_material';
+import { applySettings, groundMaterial, mapUniforms, setUniform, tileRules, type MapUniforms } from './map_material';
 import { PathLine } from './path_line';
 import { place } from './place_group';
 import { ReachLayer } from './reach_layer';
 import { unitQuad } from './tile_meshes';
+import { drawnByProcessor, Sharpness } from './sharpness';
 import { TileScene } from './tile_scene';
 import { ViewCamera } from './view_camera';
 import type { Walkthrough } from './walkthrough';
 
 const FIT_MARGIN_PX = 48;
-const EASE_PER_S = 9; // how fast the view follows
 const WALK_SCALE = 40; // CSS pixels per metre that the floor of a walkthrough is chosen for
 
 export class MapView {
@@ -47,22 +48,24 @@ export class MapView {
   private readonly reach = new ReachLayer();
   private readonly ground = new Mesh(unitQuad(), groundMaterial(this.uniforms));
   private walkthrough: Walkthrough | null = null;
-  private readonly pacer = new FramePacer((now) => this.draw(now));
+  readonly pacer = new FramePacer((now) => this.draw(now));
+  private readonly sharpness: Sharpness;
   private held = false;
   private stale = { tiles: true, path: true, settings: true };
-  private target: Viewport | null = null;
+  private readonly glide = new Glide();
   private lastFrame = 0;
   private touchedByUser = false;
   private theme: Theme = 'dark';
 
   constructor(private readonly holder: HTMLElement, private readonly live: LiveMap, private readonly settings: Store<Settings>) {
-    this.renderer = new WebGLRenderer({ antialias: window.devicePixelRatio < 1.5, powerPreference: 'high-performance' });
+    this.renderer = new WebGLRenderer({ antialias: window.devicePixelRatio < 1.5 && !drawnByProcessor(), powerPreference: 'high-performance' });
+    this.sharpness = new Sharpness(this.renderer, () => { this.stale.settings = this.stale.tiles = true; this.requestDraw(); });
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     holder.prepend(this.canvas);
-    this.tiles = new TileScene(this.renderer, live, this.uniforms);
+    this.tiles = new TileScene(this.renderer, live, this.uniforms, tileRules(settings.get(), live.info));
     this.ground.frustumCulled = false;
-    this.ground.renderOrder = -10;
+    this.ground.renderOrder = 1; // after all that hides it
     this.scene.add(this.ground, this.tiles.group, this.reach.mesh, this.grid.mesh, this.path.group, this.marker.group);
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
@@ -105,6 +108,7 @@ export class MapView {
   /** While held, the picture stays as it is though the map goes on; letting go catches up. */
   hold(held: boolean): void {
     this.held = held;
+    this.tiles.hold(held);
     this.stale.tiles = this.stale.path = true;
     this.requestDraw();
   }
@@ -112,7 +116,7 @@ export class MapView {
   /** Moves the view by hand: it stays where the person puts it. */
   moveTo(view: Viewport): void {
     this.touchedByUser = true;
-    this.target = null;
+    this.glide.target = null;
     if (this.settings.get().follow !== 'free' && Math.hypot(view.x - this.viewport.x, view.y - this.viewport.y) * view.scale > 1) this.settings.set({ follow: 'free' });
     this.setViewport(view);
   }
@@ -130,7 +134,7 @@ export class MapView {
 
   /** Glides to a view. */
   glideTo(view: Viewport): void {
-    this.target = { ...view, width: this.viewport.width, height: this.viewport.height };
+    this.glide.target = { ...view, width: this.viewport.width, height: this.viewport.height };
     this.requestDraw();
   }
 
@@ -209,12 +213,13 @@ export class MapView {
     const pose = this.live.pose?.pose;
     if (follow === 'free' || !pose || this.held) return;
     const turn = follow === 'heading' ? wrapAngle(heading(pose) - Math.PI / 2) : 0;
-    this.glideTo({ ...this.viewport, scale: this.target?.scale ?? this.viewport.scale, x: pose.x, y: pose.y, turn });
+    this.glideTo({ ...this.viewport, scale: this.glide.target?.scale ?? this.viewport.scale, x: pose.x, y: pose.y, turn });
   }
 
   private setViewport(view: Viewport): void {
     this.viewport = view;
     this.stale.tiles = true;
+    this.sharpness.moved(this.pacer.lateMs);
     this.moved.emit(view);
     this.requestDraw();
   }
@@ -222,11 +227,11 @@ export class MapView {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.holder;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setPixelRatio(this.sharpness.wanted);
     this.renderer.setSize(width, height);
     this.path.resize(width, height);
     this.setViewport({ ...this.viewport, width, height });
-    if (this.target) this.target = { ...this.target, width, height };
+    if (this.glide.target) this.glide.target = { ...this.glide.target, width, height };
     if (!this.touchedByUser) this.fitMap();
   }
 
@@ -234,8 +239,8 @@ export class MapView {
     const seconds = Math.min(0.1, (now - this.lastFrame) / 1000);
     if (seconds > 0) this.fps = this.fps * 0.9 + 0.1 / Math.max(seconds, 1e-3);
     this.lastFrame = now;
-    this.glide(seconds);
-    if (!this.held) this.tiles.upload();
+    const moved = this.glide.step(this.viewport, seconds);
+    if (moved) this.setViewport(moved);
     if (this.walkthrough) return this.drawWalk(this.walkthrough, seconds);
     this.refresh();
     this.eye.solid = this.settings.get().solid;
@@ -252,20 +257,11 @@ export class MapView {
     if (this.stale.settings) this.refreshColours(settings);
     setUniform(this.uniforms, 'uQuiet', 1); // the floor keeps in the background
     this.grid.mesh.visible = false;
-    if (this.live.info) this.tiles.show({ ...this.viewport, x, y, turn: 0, scale: WALK_SCALE }, this.live.info, { ...settings, solid: false }, walk.floor);
+    const brought = !this.live.info || this.tiles.show({ ...this.viewport, x, y, turn: 0, scale: WALK_SCALE }, this.live.info, { ...settings, solid: false }, walk.floor);
     this.stale.settings = false;
     this.renderer.render(this.scene, walk.camera);
     this.drawn.emit(this.viewport);
-    if (more) this.requestDraw();
-  }
-
-  private glide(seconds: number): void {
-    if (!this.target) return;
-    const t = matchMedia('(prefers-reduced-motion: reduce)').matches ? 1 : 1 - Math.exp(-EASE_PER_S * seconds);
-    const { viewport: from, target: to } = this;
-    const next = towards(from, to, t);
-    if (pixelsApart(next, to) < 0.4) this.target = null;
-    this.setViewport(this.target ? next : { ...to, width: from.width, height: from.height });
+    if (more || !brought) this.requestDraw();
   }
 
   private refresh(): void {
@@ -273,12 +269,13 @@ export class MapView {
     const { info } = this.live;
     if (this.stale.settings) this.refreshColours(settings);
     setUniform(this.uniforms, 'uQuiet', 0);
-    if (this.stale.tiles && info) this.tiles.show(this.viewport, info, settings);
+    const brought = !this.stale.tiles || !info || this.tiles.show(this.viewport, info, settings);
+    if (!brought) this.requestDraw();
     const pathDue = this.stale.settings || performance.now() >= this.path.restsUntil();
     if (this.stale.path && pathDue && !this.held) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
     const pathLater = this.stale.path && !pathDue;
     this.path.setScale(this.viewport.scale);
-    this.stale = { tiles: false, path: pathLater, settings: false };
+    this.stale = { tiles: !brought, path: pathLater, settings: false };
     if (pathLater) setTimeout(() => this.requestDraw(), Math.max(16, this.path.restsUntil() - performance.now()));
     const pose = this.live.pose;
     if (pose?.pose && !this.held) {
@@ -289,6 +286,7 @@ export class MapView {
 
   private refreshColours(settings: Settings): void {
     applySettings(this.uniforms, settings, this.theme, this.live.info);
+    this.tiles.setRules(tileRules(settings, this.live.info));
     setUniform(this.uniforms, 'uPixelRatio', this.renderer.getPixelRatio());
     const colours = classColours(settings.palette, this.theme);
     const [r, g, b] = colours.free;

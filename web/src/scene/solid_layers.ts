@@ -41,12 +41,16 @@ void main() {
   colour = vec4(base * vAbout.z * mix(0.72, 1.0, vUp), 1.0);
 }`;
 
-/** What decides which boxes there are; boxes of a tile are kept while this and its revision stay. */
+const BUILD_MS = 12; // of a frame
+const MAX_KEPT = 4096; // tiles
+const NO_BOXES = new Float32Array(0);
+
+/** What decides which boxes there are; boxes of a tile are built anew when this or its revision changes. */
 const choiceOf = ({ style, operators, threshold, layers }: Settings): string => JSON.stringify([style, operators, threshold, layers]);
 
 export class SolidLayers {
   readonly mesh: Mesh<InstancedBufferGeometry, ShaderMaterial>;
-  private readonly kept = new Map<string, { rev: bigint; boxes: Float32Array }>();
+  private readonly kept = new Map<string, { readonly rev: bigint; readonly choice: string; readonly boxes: Float32Array }>();
   private choice = '';
 
   constructor(uniforms: MapUniforms) {
@@ -60,25 +64,42 @@ export class SolidLayers {
     this.mesh.visible = this.mesh.frustumCulled = false;
   }
 
-  show(tiles: readonly Tile[], info: MapInfo, settings: Settings): void {
-    if (choiceOf(settings) !== this.choice) this.kept.clear();
+  /** False if there was no time for the boxes of all tiles: some are as they were, or still missing. */
+  show(tiles: readonly Tile[], info: MapInfo, settings: Settings): boolean {
     this.choice = choiceOf(settings);
-    const parts = tiles.map((tile) => this.boxesOf(tile, info, settings));
-    this.fill(parts);
+    const until = performance.now() + BUILD_MS;
+    const due = tiles.filter((tile) => !this.isCurrent(tile)).sort((a, b) => this.builtRev(a) - this.builtRev(b));
+    let built = 0;
+    while (built < due.length && (built === 0 || performance.now() < until)) this.build(due[built++] as Tile, info, settings);
+    this.fill(tiles.map((tile) => this.kept.get(keyText(tile))?.boxes ?? NO_BOXES));
     const { uBottoms, uTops, uClip } = this.mesh.material.uniforms;
     const heights = layerHeights(info, settings.spread);
     if (uBottoms) uBottoms.value = pad(heights.map(({ bottom }) => bottom));
     if (uTops) uTops.value = pad(heights.map(({ top }) => top));
     if (uClip) uClip.value = settings.clipHeight;
+    return built === due.length;
   }
 
-  private boxesOf(tile: Tile, info: MapInfo, settings: Settings): Float32Array {
+  /** Another map begins. */
+  clear(): void {
+    this.kept.clear();
+  }
+
+  private isCurrent(tile: Tile): boolean {
     const kept = this.kept.get(keyText(tile));
-    if (kept && kept.rev === tile.rev) return kept.boxes;
-    const boxes = occupiedBoxes(tile, info, settings);
-    this.kept.set(keyText(tile), { rev: tile.rev, boxes });
-    if (this.kept.size > 4096) this.kept.delete(this.kept.keys().next().value ?? '');
-    return boxes;
+    return kept?.rev === tile.rev && kept.choice === this.choice;
+  }
+
+  /** Of the boxes that are there; -1: none are. */
+  private builtRev(tile: Tile): number {
+    return Number(this.kept.get(keyText(tile))?.rev ?? -1n);
+  }
+
+  private build(tile: Tile, info: MapInfo, settings: Settings): void {
+    const key = keyText(tile);
+    this.kept.delete(key); // to the end: the longest unchanged goes first
+    this.kept.set(key, { rev: tile.rev, choice: this.choice, boxes: occupiedBoxes(tile, info, settings) });
+    if (this.kept.size > MAX_KEPT) this.kept.delete(this.kept.keys().next().value ?? '');
   }
 
   private fill(parts: readonly Float32Array[]): void {

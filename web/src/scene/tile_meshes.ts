@@ -2,7 +2,7 @@
 
 import { BufferAttribute, Group, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, type BufferGeometry, type ShaderMaterial } from 'three';
 import { tileSide, type Tile } from '../tile_store';
-import { tileMaterial, type MapUniforms } from './map_material';
+import { tileMaterial, type MapUniforms, type TileRules } from './map_material';
 import type { TilePages } from './tile_pages';
 
 export function unitQuad(): InstancedBufferGeometry {
@@ -19,12 +19,21 @@ export class TileMeshes {
   private readonly uniforms: MapUniforms;
 
   /** `only`: paint this layer alone, translucent. */
-  constructor(private readonly pages: TilePages, uniforms: MapUniforms, only = -1) {
+  constructor(private readonly pages: TilePages, uniforms: MapUniforms, private rules: TileRules, private readonly only = -1) {
     this.uniforms = { ...uniforms, uOnly: { value: only }, uHeight: { value: 0 } };
   }
 
   setHeight(metres: number): void {
     if (this.uniforms['uHeight']) this.uniforms['uHeight'].value = metres;
+  }
+
+  setRules(rules: TileRules): void {
+    if (Object.entries(rules).every(([name, value]) => this.rules[name] === value)) return;
+    this.rules = rules;
+    for (const { material } of this.meshes) {
+      Object.assign(material.defines, rules);
+      material.needsUpdate = true;
+    }
   }
 
   /** Takes the tiles that are to be seen, in the order of drawing. */
@@ -51,7 +60,7 @@ export class TileMeshes {
   private addMesh(): void {
     const page = this.pages.pages[this.meshes.length];
     if (!page) return;
-    const mesh = new Mesh<BufferGeometry, ShaderMaterial>(unitQuad(), tileMaterial(this.uniforms, page));
+    const mesh = new Mesh<BufferGeometry, ShaderMaterial>(unitQuad(), tileMaterial(this.uniforms, page, this.rules, this.only >= 0));
     mesh.frustumCulled = false;
     this.meshes.push(mesh);
     this.group.add(mesh);

@@ -4,24 +4,28 @@ import { Group, type WebGLRenderer } from 'three';
 import type { MapInfo } from '../gen/flogmap/v1/map_pb';
 import type { LiveMap } from '../live_map';
 import type { Settings } from '../settings';
-import { keyText, tilesToDraw, type Tile, type TileKey } from '../tile_store';
+import { keyText, tilesToDraw, withoutStandIns, type Tile, type TileKey } from '../tile_store';
 import { levelFor, visibleRect, type Rect, type Viewport } from '../viewport';
-import type { MapUniforms } from './map_material';
+import type { MapUniforms, TileRules } from './map_material';
 import { layerHeights, SolidLayers } from './solid_layers';
 import { TileMeshes } from './tile_meshes';
 import { TilePages } from './tile_pages';
 
+const UPLOAD_MS = 8; // of a frame
+const UPLOAD_BYTES = 4 * 2 ** 20; // of a frame: the card works on after the call is back
+
 export class TileScene {
   readonly group = new Group();
-  /** What is on screen, coarse tiles first. */
+  /** What is on screen, fine tiles first. */
   shown: readonly Tile[] = [];
   private pages: TilePages | null = null;
   private flat: TileMeshes | null = null;
   private floors: TileMeshes[] = []; // of the layers above the lowest, when they are spread apart
   private readonly solid: SolidLayers;
   private readonly dirty = new Map<string, Tile>();
+  private later: Map<string, Tile> | null = null; // what changed while the picture is held; null: it is not
 
-  constructor(private readonly renderer: WebGLRenderer, private readonly live: LiveMap, private readonly uniforms: MapUniforms) {
+  constructor(private readonly renderer: WebGLRenderer, private readonly live: LiveMap, private readonly uniforms: MapUniforms, private rules: TileRules) {
     this.solid = new SolidLayers(uniforms);
     this.group.add(this.solid.mesh);
   }
@@ -36,11 +40,19 @@ export class TileScene {
     const layers = this.live.info?.layers ?? [];
     const pages = new TilePages(this.renderer, Math.max(1, layers.length));
     this.pages = pages;
-    this.flat = new TileMeshes(pages, this.uniforms);
-    this.floors = layers.map((_, layer) => new TileMeshes(pages, this.uniforms, layer));
+    this.flat = new TileMeshes(pages, this.uniforms, this.rules);
+    this.floors = layers.map((_, layer) => new TileMeshes(pages, this.uniforms, this.rules, layer));
     this.group.add(this.flat.group, ...this.floors.map(({ group }) => group));
+    this.solid.clear();
     this.dirty.clear();
+    this.later?.clear();
     for (const tile of this.live.tiles.all()) this.dirty.set(keyText(tile), tile);
+  }
+
+  /** By which rules tiles are painted. */
+  setRules(rules: TileRules): void {
+    this.rules = rules;
+    for (const meshes of [this.flat, ...this.floors]) meshes?.setRules(rules);
   }
 
   get textureBytes(): number {
@@ -48,37 +60,61 @@ export class TileScene {
   }
 
   change(applied: readonly TileKey[]): void {
+    const changed = this.later ?? this.dirty;
     for (const key of applied) {
       const tile = this.live.tiles.get(key);
-      if (tile) this.dirty.set(keyText(key), tile);
+      if (tile) changed.set(keyText(key), tile);
     }
+  }
+
+  /** While held, tiles are shown as they are now; letting go takes over what changed meanwhile. */
+  hold(held: boolean): void {
+    for (const [key, tile] of this.later ?? []) this.dirty.set(key, tile);
+    this.later = held ? new Map() : null;
   }
 
   /** Frees what tiles hold on the graphics card. */
   release(keys: readonly TileKey[]): void {
     for (const key of keys) {
       this.dirty.delete(keyText(key));
+      this.later?.delete(keyText(key));
       this.pages?.release(key);
     }
   }
 
-  /** Brings changed tiles to the graphics card, and only those. */
-  upload(): void {
-    for (const tile of this.dirty.values()) this.pages?.upload(tile);
-    this.dirty.clear();
+  /** Brings tiles to the graphics card, and no more of them than a frame has time for: changed ones on screen, then
+   *  those that the card never had. What changes out of sight waits until it is seen. False if some are left. */
+  private upload(): boolean {
+    const until = performance.now() + UPLOAD_MS;
+    let bytes = 0;
+    for (const [key, tile] of this.due()) {
+      if (bytes > UPLOAD_BYTES || performance.now() > until) return false;
+      this.pages?.upload(tile);
+      this.dirty.delete(key);
+      bytes += tile.planes.byteLength;
+    }
+    return true;
   }
 
-  /** Chooses what is to be seen from where one looks. */
-  show(view: Viewport, info: MapInfo, settings: Settings, floor = settings.solid ? (info.layers[0]?.zMin ?? 0) : 0): void {
+  private *due(): Iterable<[string, Tile]> {
+    const shown = new Set(this.shown.map(keyText));
+    for (const entry of this.dirty) if (shown.has(entry[0])) yield entry; // longest changed first
+    for (const entry of this.dirty) if (!this.pages?.slotOf(entry[1])) yield entry;
+  }
+
+  /** Chooses what is to be seen from where one looks. False if it could not yet bring all of it to the graphics card. */
+  show(view: Viewport, info: MapInfo, settings: Settings, floor = settings.solid ? (info.layers[0]?.zMin ?? 0) : 0): boolean {
     const level = levelFor(view, info.cellSize, info.levels, this.renderer.getPixelRatio());
     const rect = visibleRect(view);
     const more = settings.solid ? Math.max(rect.xMax - rect.xMin, rect.yMax - rect.yMin) : 0; // a slanted eye sees further
     this.shown = tilesToDraw(this.live.tiles, grown(rect, more), level, info.cellSize);
+    const brought = this.upload();
     this.flat?.show(this.shown, info.cellSize);
     this.flat?.setHeight(floor);
     this.showFloors(info, settings);
-    if (settings.solid) this.solid.show(this.shown, info, settings);
-    else this.solid.mesh.visible = false;
+    const built = !settings.solid || this.solid.show(withoutStandIns(this.live.tiles, this.shown, level), info, settings);
+    if (!settings.solid) this.solid.mesh.visible = false;
+    return brought && built;
   }
 
   private showFloors(info: MapInfo, settings: Settings): void {
