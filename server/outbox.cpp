@@ -174,6 +174,8 @@ Bytes Outbox::next(ServedMap& map, Time now) {
   if (Bytes message = next_pose(now)) return message;
   if (!subscribed_) return nullptr;
   if (Bytes message = next_trajectory(map, now)) return message;
+  const bool image_first = batches_before_image_ >= kBatchesBeforeImage;
+  if (Bytes message = image_first ? next_image(now) : nullptr) return message;
   if (Bytes message = next_tiles(map, now)) return message;
   if (Bytes message = next_control()) return message;  // the end of a snapshot without tiles
   return next_image(now);
@@ -242,6 +244,7 @@ Bytes Outbox::next_tiles(ServedMap& map, Time now) {
     if (round_.empty() && waiting_.empty()) round_revision_ = map.revision();
     message = map.tile_batch(round_revision_, round_.empty(), slots, choice_);
     window_.sent(message->size(), now);
+    if (image_waits()) ++batches_before_image_;
   }
   if (in_snapshot_ && round_.empty()) {
     in_snapshot_ = false;
@@ -250,12 +253,17 @@ Bytes Outbox::next_tiles(ServedMap& map, Time now) {
   return message;
 }
 
+bool Outbox::image_waits() const {
+  return std::any_of(images_.begin(), images_.end(), [](const Bytes& image) { return image != nullptr; });
+}
+
 Bytes Outbox::next_image(Time now) {
   for (Bytes& image : images_) {
     if (!image) continue;
     const bool fits = unacknowledged() + image->size() <= window_.bytes();
     if (!fits && unacknowledged() > 0) return nullptr;  // one that never fits goes alone
     window_.sent(image->size(), now);
+    batches_before_image_ = 0;
     return std::exchange(image, nullptr);
   }
   return nullptr;

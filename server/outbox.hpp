@@ -29,6 +29,7 @@ class Outbox {
   static constexpr std::chrono::milliseconds kTrajectoryInterval{200};
   static constexpr std::size_t kTrajectoryPart = 1024;  // entries in one message, at most
   static constexpr int kPosesSkippedBehind = 3;         // of four, while answers are late
+  static constexpr int kBatchesBeforeImage = 4;         // then a picture goes first, or it might never
 
   explicit Outbox(WireLimits limits = {}) : window_(limits) {}
 
@@ -84,6 +85,7 @@ class Outbox {
   Bytes next_trajectory(ServedMap& map, Time now);
   Bytes next_tiles(ServedMap& map, Time now);
   Bytes next_image(Time now);
+  [[nodiscard]] bool image_waits() const;
 
   SendWindow window_;
   bool subscribed_ = false;
@@ -98,6 +100,7 @@ class Outbox {
   bool in_snapshot_ = false;
   std::uint64_t round_revision_ = 0;  // once the round is done, the client has every tile as of this
   Time next_round_{};
+  int batches_before_image_ = 0;  // since a picture waits
 
   std::deque<Bytes> controls_;
   Bytes pose_, features_, status_, playback_;

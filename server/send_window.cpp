@@ -1,11 +1,12 @@
 #include "server/send_window.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace flogmap {
 
 SendWindow::SendWindow(WireLimits limits)
-    : limits_(limits), bytes_(std::min<std::uint64_t>(kFirstBytes, limits.max_unacknowledged_bytes)) {}
+    : limits_(limits), bytes_(std::min<std::uint64_t>(kLeastBytes, limits.max_unacknowledged_bytes)) {}
 
 void SendWindow::sent(std::size_t bytes, Time now) {
   if (unacknowledged() == 0) owed_since_ = now;
@@ -30,26 +31,32 @@ bool SendWindow::acknowledge(std::uint64_t total, Time now) {
 
 void SendWindow::learn(const Message& answered, std::uint64_t was_on_the_way, std::uint64_t newly, Time now) {
   const Duration took = now - answered.sent_at;
+  if (now - while_began_ > kLately) {
+    quickest_before_ = std::exchange(quickest_, kLongestWay);
+    while_began_ = now;
+  }
   quickest_ = std::min(quickest_, took);
-  if (took > quickest_ + kLate) {
+  if (took > way() + kLate) {
     using Seconds = std::chrono::duration<double>;
     const auto taken_in = static_cast<double>(answered.end - answered.acknowledged_then);
-    const double aimed = taken_in * (Seconds(quickest_ + kAimed) / Seconds(took));
+    const double aimed = taken_in * (Seconds(way() + kAimed) / Seconds(took));
     const std::uint64_t least = std::min<std::uint64_t>(kLeastBytes, limits_.max_unacknowledged_bytes);
     bytes_ = std::clamp(static_cast<std::uint64_t>(aimed), least, bytes_);
-  } else if (took < quickest_ + kQuick && 2 * was_on_the_way >= bytes_) {
+  } else if (took < way() + kQuick && 2 * was_on_the_way >= bytes_) {
     bytes_ = std::min<std::uint64_t>(limits_.max_unacknowledged_bytes, bytes_ + newly);
   }
 }
 
+SendWindow::Duration SendWindow::way() const { return std::min(quickest_, quickest_before_); }
+
 std::size_t SendWindow::batch_bytes() const {
-  return static_cast<std::size_t>(std::min<std::uint64_t>(limits_.max_batch_bytes, bytes_ / kBatchesOnTheWay));
+  return static_cast<std::size_t>(
+      std::min<std::uint64_t>(limits_.max_batch_bytes, bytes_ / kBatchesOnTheWay));
 }
 
 bool SendWindow::behind(Time now) const {
   if (on_the_way_.empty()) return false;
-  const Duration usual = quickest_ == Duration::max() ? Duration::zero() : quickest_;
-  return now - on_the_way_.front().sent_at > usual + kQuick;
+  return now - on_the_way_.front().sent_at > way() + kQuick;
 }
 
 bool SendWindow::overdue(Time now) const { return unacknowledged() > 0 && now - owed_since_ >= kAckDeadline; }

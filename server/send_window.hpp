@@ -10,22 +10,24 @@
 
 namespace flogmap {
 
-/// Learns from the acknowledgements how much a line and its page take in about a second, and lets no more be
-/// under way: what is sent after it would wait that long. It starts small, grows with every quick answer while it
-/// is made use of, and when answers are late it becomes what was taken in lately in half a second. So a slow page
-/// soon hears something, a pose is never far behind, and no message keeps a line so long that it is taken for dead.
+/// Learns from the acknowledgements how much a line and its page take in about a second, and lets little more
+/// be under way: what is sent after it would wait that long. It starts small, grows with every quick answer
+/// while it is made use of, and when answers are late it becomes what was taken in lately in about a second.
+/// So a slow page soon hears something, a pose is never far behind, and no message keeps a line so long that
+/// it is taken for dead.
 class SendWindow {
  public:
   using Time = std::chrono::steady_clock::time_point;
   using Duration = std::chrono::steady_clock::duration;
 
-  static constexpr std::uint64_t kFirstBytes = 64U << 10U;
-  static constexpr std::uint64_t kLeastBytes = 16U << 10U;
+  static constexpr std::uint64_t kLeastBytes = 64U << 10U;  // and to begin with
   static constexpr std::uint64_t kBatchesOnTheWay = 4;
-  // Beyond the quickest answer so far, which is the way there and back.
+  // Beyond the quickest answer lately, which is the way there and back and what a busy page needs anyhow.
   static constexpr std::chrono::milliseconds kQuick{300};
   static constexpr std::chrono::milliseconds kAimed{500};
   static constexpr std::chrono::milliseconds kLate{900};
+  static constexpr std::chrono::milliseconds kLongestWay{1200};  // what takes longer waits in a queue of ours
+  static constexpr std::chrono::seconds kLately{5};              // to twice that
   static constexpr std::chrono::seconds kAckDeadline{30};
 
   explicit SendWindow(WireLimits limits);
@@ -53,14 +55,18 @@ class SendWindow {
     std::uint64_t acknowledged_then;
   };
 
+  /// The quickest answer lately, at most kLongestWay.
+  [[nodiscard]] Duration way() const;
   void learn(const Message& answered, std::uint64_t was_on_the_way, std::uint64_t newly, Time now);
 
   WireLimits limits_;
   std::uint64_t bytes_;
   std::uint64_t sent_ = 0;
   std::uint64_t acknowledged_ = 0;
-  std::deque<Message> on_the_way_;  // oldest first
-  Duration quickest_ = Duration::max();
+  std::deque<Message> on_the_way_;   // oldest first
+  Duration quickest_ = kLongestWay;  // of this while
+  Duration quickest_before_ = kLongestWay;
+  Time while_began_{};
   Time owed_since_{};
 };
 

@@ -92,6 +92,18 @@ TEST_F(ProtocolTest, APoseNeverWaitsBehindMoreThanOneBatch) {
   EXPECT_EQ(outbox.next(*state_.live, start_ + 1ms), pose);
 }
 
+TEST_F(ProtocolTest, APictureHasItsTurnThoughTilesNeverEnd) {
+  Outbox outbox(WireLimits{1U << 20U, 1, 65536});  // one tile a batch
+  outbox.subscribe({{{}, Planes::evidence}, {}, 0, false}, *state_.live);
+  ASSERT_GT(state_.live->board().num_slots(), 20U);
+  const Bytes picture = to_shared("a picture");
+  outbox.image(ImageStream::left, picture);
+  int num_before = 0;
+  while (outbox.next(*state_.live, start_) != picture) ASSERT_LE(++num_before, 20);
+  EXPECT_GE(num_before, Outbox::kBatchesBeforeImage);
+  EXPECT_LE(num_before, Outbox::kBatchesBeforeImage + 2);  // and the snapshot's beginning, and the path
+}
+
 TEST_F(ProtocolTest, ChangesComeAtNoMoreThanTenHertz) {
   StreamProtocol protocol(state_, Role::view, start_);
   protocol.receive(hello_frame(), start_);
