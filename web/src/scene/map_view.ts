@@ -14,13 +14,13 @@ import { fit, pan, wrapAngle, zoomAt, type Point, type Viewport } from '../viewp
 import { CameraMarker } from './camera_marker';
 import { FramePacer } from './frame_pacer';
 import { Glide } from './glide';
+import { hasGraphicsCard } from './graphics_card';
 import { GridLines } from './grid_lines';
 import { applySettings, groundMaterial, mapUniforms, setUniform, tileRules, type MapUniforms } from './map_material';
 import { PathLine } from './path_line';
 import { place } from './place_group';
 import { ReachLayer } from './reach_layer';
 import { unitQuad } from './tile_meshes';
-import { drawnByProcessor, Sharpness } from './sharpness';
 import { TileScene } from './tile_scene';
 import { ViewCamera } from './view_camera';
 import type { Walkthrough } from './walkthrough';
@@ -49,7 +49,6 @@ export class MapView {
   private readonly ground = new Mesh(unitQuad(), groundMaterial(this.uniforms));
   private walkthrough: Walkthrough | null = null;
   readonly pacer = new FramePacer((now) => this.draw(now));
-  private readonly sharpness: Sharpness;
   private held = false;
   private stale = { tiles: true, path: true, settings: true };
   private readonly glide = new Glide();
@@ -58,8 +57,7 @@ export class MapView {
   private theme: Theme = 'dark';
 
   constructor(private readonly holder: HTMLElement, private readonly live: LiveMap, private readonly settings: Store<Settings>) {
-    this.renderer = new WebGLRenderer({ antialias: window.devicePixelRatio < 1.5 && !drawnByProcessor(), powerPreference: 'high-performance' });
-    this.sharpness = new Sharpness(this.renderer, () => { this.stale.settings = this.stale.tiles = true; this.requestDraw(); });
+    this.renderer = new WebGLRenderer({ antialias: window.devicePixelRatio < 1.5 && hasGraphicsCard(), powerPreference: 'high-performance' });
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     holder.prepend(this.canvas);
@@ -219,7 +217,6 @@ export class MapView {
   private setViewport(view: Viewport): void {
     this.viewport = view;
     this.stale.tiles = true;
-    this.sharpness.moved(this.pacer.lateMs);
     this.moved.emit(view);
     this.requestDraw();
   }
@@ -227,7 +224,7 @@ export class MapView {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.holder;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(this.sharpness.wanted);
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.renderer.setSize(width, height);
     this.path.resize(width, height);
     this.setViewport({ ...this.viewport, width, height });
