@@ -4,6 +4,7 @@ import { defineConfig } from '@playwright/test';
 export default defineConfig({
   testDir: '.',
   outputDir: '../../web/test-results',
+  snapshotPathTemplate: '{testDir}/golden/{arg}{ext}',
   workers: 1, // every test starts a mapping program of its own: two at a time would only slow each other down
   fullyParallel: false,
   timeout: 240_000,

@@ -3,6 +3,8 @@ import { spawn, type ChildProcess } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import path from 'node:path';
 
+/** The program takes every FLOGMAP_ variable for an option of its own: it is not given the tests'. */
+const { FLOGMAP_CHROMIUM: _, ...ENVIRONMENT } = process.env;
 const ROOT = path.resolve(__dirname, '../..');
 export const PROGRAM = process.env['FLOGMAP_BIN'] ?? path.join(ROOT, 'build/release/flogmap');
 
@@ -18,7 +20,7 @@ export class Program {
   static launch(command: readonly string[], port = 0): Promise<Program> {
     if (!existsSync(PROGRAM)) throw new Error(`${PROGRAM} is missing: build it, or name another in FLOGMAP_BIN`);
     const args = [...command, '--listen', `127.0.0.1:${port}`, '--web-root', path.join(ROOT, 'web/dist')];
-    const child = spawn(PROGRAM, args, { stdio: ['ignore', 'pipe', 'pipe'] });
+    const child = spawn(PROGRAM, args, { stdio: ['ignore', 'pipe', 'pipe'], env: ENVIRONMENT });
     return new Promise((resolve, reject) => {
       let said = '';
       const listen = (data: Buffer): void => {
