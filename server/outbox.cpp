@@ -174,8 +174,7 @@ Bytes Outbox::next(ServedMap& map, Time now) {
   if (Bytes message = next_pose(now)) return message;
   if (!subscribed_) return nullptr;
   if (Bytes message = next_trajectory(map, now)) return message;
-  const bool image_first = batches_before_image_ >= kBatchesBeforeImage;
-  if (Bytes message = image_first ? next_image(now) : nullptr) return message;
+  if (image_first()) return next_image(now);  // or wait until it fits
   if (Bytes message = next_tiles(map, now)) return message;
   if (Bytes message = next_control()) return message;  // the end of a snapshot without tiles
   return next_image(now);
@@ -257,6 +256,8 @@ bool Outbox::image_waits() const {
   return std::any_of(images_.begin(), images_.end(), [](const Bytes& image) { return image != nullptr; });
 }
 
+bool Outbox::image_first() const { return batches_before_image_ >= kBatchesBeforeImage && image_waits(); }
+
 Bytes Outbox::next_image(Time now) {
   for (Bytes& image : images_) {
     if (!image) continue;
@@ -274,7 +275,7 @@ std::optional<Outbox::Time> Outbox::next_at(const ServedMap& map) const {
   const auto consider = [&](Time time) { earliest = earliest ? std::min(*earliest, time) : time; };
   if (pose_ && pose_interval_) consider(next_pose_);
   if (subscribed_ && trajectory_sent_ < map.trajectory().size()) consider(next_trajectory_);
-  if (subscribed_ && !waiting_.empty() && window_.open()) consider(next_round_);
+  if (subscribed_ && !waiting_.empty() && window_.open() && !image_first()) consider(next_round_);
   return earliest;
 }
 

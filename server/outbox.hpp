@@ -86,6 +86,7 @@ class Outbox {
   Bytes next_tiles(ServedMap& map, Time now);
   Bytes next_image(Time now);
   [[nodiscard]] bool image_waits() const;
+  [[nodiscard]] bool image_first() const;
 
   SendWindow window_;
   bool subscribed_ = false;
