@@ -6,14 +6,14 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { expect, test, type Page } from '@playwright/test';
 import { open } from './flog_page';
-import { Program, PROGRAM } from './program';
+import { ENVIRONMENT, Program, PROGRAM } from './program';
 
-const VIEW = 'v=1.6,0,130,0';
+const VIEW = 'v=0,0,90,0';
 const SHOTS: readonly (readonly [name: string, hash: string, scheme: 'dark' | 'light', solid?: true])[] = [
   ['visual-cividis', `#${VIEW}`, 'dark'],
   ['paper-grey', `#${VIEW}&p=grey`, 'light'],
   ['planning-viridis', `#${VIEW}&s=planning&p=viridis`, 'dark'],
-  ['motion-contrast', `#${VIEW}&s=motion&p=contrast`, 'light'],
+  ['motion-contrast', `#${VIEW}&s=motion&p=contrast&l=0:1,1:-,2:-`, 'light'],
   ['confidence', `#${VIEW}&s=confidence`, 'dark'],
   ['solid', `#${VIEW}`, 'dark', true],
 ];
@@ -23,7 +23,7 @@ let program: Program;
 test.beforeAll(async () => {
   folder = mkdtempSync(path.join(tmpdir(), 'flogmap-golden-'));
   const out = path.join(folder, 'map');
-  execFileSync(PROGRAM, ['map', '--source', 'sim:two-boxes-near', '--max-frames', '40', '--out', out], { stdio: 'pipe' });
+  execFileSync(PROGRAM, ['map', '--source', 'sim:two-boxes-near', '--max-frames', '40', '--out', out], { stdio: 'pipe', env: ENVIRONMENT });
   program = await Program.launch(['serve', '--store', path.join(out, 'map.flog')]);
 });
 test.afterAll(async () => {
@@ -47,6 +47,7 @@ for (const [name, hash, scheme, solid] of SHOTS)
     if (solid) {
       await page.locator('.map > canvas').focus();
       await page.keyboard.press('v');
+      await page.locator('.map > canvas').blur(); // without the ring of the focus
     }
     await page.waitForTimeout(3000);
     await onlyTheMap(page);

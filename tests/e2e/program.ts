@@ -4,7 +4,7 @@ import { existsSync } from 'node:fs';
 import path from 'node:path';
 
 /** The program takes every FLOGMAP_ variable for an option of its own: it is not given the tests'. */
-const { FLOGMAP_CHROMIUM: _, ...ENVIRONMENT } = process.env;
+export const { FLOGMAP_CHROMIUM: _, ...ENVIRONMENT } = process.env;
 const ROOT = path.resolve(__dirname, '../..');
 export const PROGRAM = process.env['FLOGMAP_BIN'] ?? path.join(ROOT, 'build/release/flogmap');
 

@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { expect, test, type Page } from '@playwright/test';
 import { keys, open, state, tile } from './flog_page';
-import { Program, PROGRAM } from './program';
+import { ENVIRONMENT, Program, PROGRAM } from './program';
 
 const DATA = process.env['FLOGMAP_DATA'];
 const RECORDING = path.join(DATA ?? '', 'euroc_mh01_10hz');
@@ -67,7 +67,7 @@ test('the live map is the map that the headless run writes', async () => {
   const program = await Program.start(`euroc:${RECORDING}`, 0, ['--pace', 'fast']);
   const out = mkdtempSync(path.join(tmpdir(), 'flogmap-e2e-'));
   try {
-    execFileSync(PROGRAM, ['map', '--source', `euroc:${RECORDING}`, '--out', path.join(out, 'map')], { stdio: 'pipe' });
+    execFileSync(PROGRAM, ['map', '--source', `euroc:${RECORDING}`, '--out', path.join(out, 'map')], { stdio: 'pipe', env: ENVIRONMENT });
     await expect.poll(async () => (await program.json<{ state: string }>('session')).state, { timeout: 120_000 }).toBe('finished');
     // What has been read is finished; the last frames are tracked a moment later.
     await expect.poll(async () => (await program.json<{ tracked: number }>('session')).tracked, { timeout: 20_000 }).toBe(110);
