@@ -87,7 +87,7 @@ function options(place: HTMLElement, { curves: names, limit }: Chart): uPlot.Opt
   const colour = (name: string): string => style.getPropertyValue(name).trim();
   const axis = { stroke: colour('--text-3'), font: `10px ${style.fontFamily}`, grid: { stroke: colour('--line'), width: 1 }, ticks: { show: false } };
   return {
-    width: place.clientWidth, height: HEIGHT_PX, legend: { show: false }, cursor: { show: false }, padding: [6, 4, 0, 0],
+    width: place.clientWidth, height: HEIGHT_PX, legend: { show: false }, cursor: { show: false }, padding: [6, 4, 7, 0],
     scales: { x: { time: false, range: () => [Date.now() / 1000 - KEPT_S, Date.now() / 1000] }, y: { range: (_, __, max) => [0, Math.max(1, (max ?? 1) * 1.15)] } },
     axes: [{ show: false }, { ...axis, size: 34 }],
     series: [{}, ...names.map((_, i) => ({ stroke: colour(CURVE_COLOURS[i] ?? '--curve-1'), width: 1.5, points: { show: false }, ...(limit && i === names.length - 1 ? { dash: [4, 3] } : {}) }))],
