@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "mapping/stereo/border_correction.hpp"
 #include "mapping/stereo/census.hpp"
 #include "mapping/stereo/median.hpp"
 #include "mapping/stereo/parallel.hpp"
@@ -72,6 +73,7 @@ class BlockMatcher : public DisparityMatcher {
       match_rows(height * i / num_bands, height * (i + 1) / num_bands, workspaces_[worker], disparity.px);
     });
     median_3x3(disparity, num_threads_);
+    correct_borders(disparity, pair);
     return disparity;
   }
 

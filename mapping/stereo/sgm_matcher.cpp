@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <vector>
 
+#include "mapping/stereo/border_correction.hpp"
 #include "mapping/stereo/census.hpp"
+#include "mapping/stereo/close_holes.hpp"
 #include "mapping/stereo/median.hpp"
 #include "mapping/stereo/parallel.hpp"
 #include "mapping/stereo/subpixel.hpp"
@@ -87,7 +89,9 @@ class SgmMatcher : public DisparityMatcher {
       match_band(pair.left, bands[i], workspaces_[worker], disparity.px);
     });
     median_3x3(disparity, num_threads_);
+    correct_borders(disparity, pair);
     subpixel_.refine(disparity, pair);
+    close_holes(disparity);
     return disparity;
   }
 
