@@ -26,12 +26,13 @@ struct Options {
   std::optional<SE3> first_pose;             // world_from_<poses_frame>
   bool as_fast_as_possible = false;          // --pace fast
   bool loop_closure = true;
-  std::string tokens_file;  // serve: who may view, who may control
-  std::string store;        // serve: the map's file
-  std::string maps_dir;     // serve: stored maps beside the live one
-  std::string out_dir;      // map: where the files go
-  int map_memory_mb = 0;    // of the map's cells, about; 0 = all of them
-  int num_threads = 0;      // of each stage that can use several; 0 = every core
+  std::string tokens_file;   // serve: who may view, who may control
+  std::string store;         // serve: the map's file
+  std::string maps_dir;      // serve: stored maps beside the live one
+  std::string out_dir;       // map: where the files go
+  int map_memory_mb = 0;     // of the map's cells, about; 0 = all of them
+  int view_memory_mb = 400;  // of packed views, from which the map is built anew
+  int num_threads = 0;       // of each stage that can use several; 0 = every core
 };
 
 void add_source_options(OptionTable& table, Options& options);

@@ -125,6 +125,7 @@ bool Outbox::control(Bytes message) {
 
 void Outbox::begin_round(const ServedMap& map, Time now) {
   if (waiting_.empty() && !(in_snapshot_ && round_.empty())) return;
+  if (image_waits() && !round_.empty()) return;  // tiles that never end would never let it go
   if (now < next_round_) return;
   for (const Slot slot : waiting_) needs_[slot] = Need::round;
   round_.insert(round_.end(), waiting_.begin(), waiting_.end());
@@ -226,7 +227,7 @@ Bytes Outbox::next_tiles(ServedMap& map, Time now) {
   begin_round(map, now);
   Bytes message;
   if (!round_.empty()) {
-    if (!window_.open()) return nullptr;
+    if (!window_.open(now)) return nullptr;
     std::vector<Slot> slots;
     std::size_t size = 64;
     while (!round_.empty()) {
@@ -243,7 +244,7 @@ Bytes Outbox::next_tiles(ServedMap& map, Time now) {
     if (round_.empty() && waiting_.empty()) round_revision_ = map.revision();
     message = map.tile_batch(round_revision_, round_.empty(), slots, choice_);
     window_.sent(message->size(), now);
-    if (image_waits()) ++batches_before_image_;
+    round_done_ = round_done_ || round_.empty();
   }
   if (in_snapshot_ && round_.empty()) {
     in_snapshot_ = false;
@@ -256,26 +257,30 @@ bool Outbox::image_waits() const {
   return std::any_of(images_.begin(), images_.end(), [](const Bytes& image) { return image != nullptr; });
 }
 
-bool Outbox::image_first() const { return batches_before_image_ >= kBatchesBeforeImage && image_waits(); }
+/// Tiles go before pictures, but those of one round only.
+bool Outbox::image_first() const { return round_done_ && round_.empty() && !in_snapshot_ && image_waits(); }
 
 Bytes Outbox::next_image(Time now) {
   for (Bytes& image : images_) {
     if (!image) continue;
-    const bool fits = unacknowledged() + image->size() <= window_.bytes();
+    const bool fits = unacknowledged() + image->size() <= window_.bytes(now);
     if (!fits && unacknowledged() > 0) return nullptr;  // one that never fits goes alone
     window_.sent(image->size(), now);
-    batches_before_image_ = 0;
+    round_done_ = false;
     return std::exchange(image, nullptr);
   }
   return nullptr;
 }
 
-std::optional<Outbox::Time> Outbox::next_at(const ServedMap& map) const {
+std::optional<Outbox::Time> Outbox::next_at(const ServedMap& map, Time now) const {
   std::optional<Time> earliest;
   const auto consider = [&](Time time) { earliest = earliest ? std::min(*earliest, time) : time; };
   if (pose_ && pose_interval_) consider(next_pose_);
   if (subscribed_ && trajectory_sent_ < map.trajectory().size()) consider(next_trajectory_);
-  if (subscribed_ && !waiting_.empty() && window_.open() && !image_first()) consider(next_round_);
+  if (subscribed_ && !waiting_.empty() && window_.open(now) && !image_first()) consider(next_round_);
+  if (!waiting_.empty() || !round_.empty() || image_waits()) {
+    if (const auto time = window_.opens_at(now)) consider(*time);
+  }
   return earliest;
 }
 

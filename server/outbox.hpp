@@ -29,7 +29,6 @@ class Outbox {
   static constexpr std::chrono::milliseconds kTrajectoryInterval{200};
   static constexpr std::size_t kTrajectoryPart = 1024;  // entries in one message, at most
   static constexpr int kPosesSkippedBehind = 3;         // of four, while answers are late
-  static constexpr int kBatchesBeforeImage = 4;         // then a picture goes first, or it might never
 
   explicit Outbox(WireLimits limits = {}) : window_(limits) {}
 
@@ -57,7 +56,7 @@ class Outbox {
   Bytes next(ServedMap& map, Time now);
 
   /// When next() may have something that it withholds now because of a rate.
-  [[nodiscard]] std::optional<Time> next_at(const ServedMap& map) const;
+  [[nodiscard]] std::optional<Time> next_at(const ServedMap& map, Time now) const;
 
   /// It has owed an Ack for 30 s.
   [[nodiscard]] bool overdue(Time now) const { return window_.overdue(now); }
@@ -101,7 +100,7 @@ class Outbox {
   bool in_snapshot_ = false;
   std::uint64_t round_revision_ = 0;  // once the round is done, the client has every tile as of this
   Time next_round_{};
-  int batches_before_image_ = 0;  // since a picture waits
+  bool round_done_ = false;  // since the last picture: the next one goes before another round begins
 
   std::deque<Bytes> controls_;
   Bytes pose_, features_, status_, playback_;

@@ -2,7 +2,7 @@
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
-flogmap_target(options SOURCES option_table.cpp options.cpp
+flogmap_target(options SOURCES option_table.cpp options.cpp serving_options.cpp
                PUBLIC front_end flog camera log nlohmann_json::nlohmann_json PRIVATE CLI11::CLI11)
 
 flogmap_target(pipeline SOURCES capture_control.cpp loop_stage.cpp map_stage.cpp pipeline.cpp pipeline_capture.cpp

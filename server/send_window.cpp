@@ -21,11 +21,13 @@ bool SendWindow::acknowledge(std::uint64_t total, Time now) {
   acknowledged_ = total;
   owed_since_ = now;
   Message answered{};
-  while (!on_the_way_.empty() && on_the_way_.front().end <= total) {
+  int num_answered = 0;
+  for (; !on_the_way_.empty() && on_the_way_.front().end <= total; ++num_answered) {
     answered = on_the_way_.front();
     on_the_way_.pop_front();
   }
-  if (answered.end > 0) learn(answered, was_on_the_way, newly, now);
+  answers_each_ = num_answered <= 1;
+  if (num_answered > 0) learn(answered, was_on_the_way, newly, now);
   return true;
 }
 
@@ -54,8 +56,14 @@ std::size_t SendWindow::batch_bytes() const {
       std::min<std::uint64_t>(limits_.max_batch_bytes, bytes_ / kBatchesOnTheWay));
 }
 
+std::optional<SendWindow::Time> SendWindow::opens_at(Time now) const {
+  if (unacknowledged() == 0 || answers_each_ || silent(now) || bytes_ >= limits_.max_unacknowledged_bytes)
+    return std::nullopt;
+  return owed_since_ + kSilent;
+}
+
 bool SendWindow::behind(Time now) const {
-  if (on_the_way_.empty()) return false;
+  if (on_the_way_.empty() || silent(now)) return false;
   return now - on_the_way_.front().sent_at > way() + kQuick;
 }
 

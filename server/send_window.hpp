@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 
 #include "server/wire.hpp"
 
@@ -28,6 +29,9 @@ class SendWindow {
   static constexpr std::chrono::milliseconds kLate{900};
   static constexpr std::chrono::milliseconds kLongestWay{1200};  // what takes longer waits in a queue of ours
   static constexpr std::chrono::seconds kLately{5};              // to twice that
+  // A client that acknowledges several messages at once and says nothing for so long may wait for more of
+  // them: then the limits alone count.
+  static constexpr std::chrono::seconds kSilent{2};
   static constexpr std::chrono::seconds kAckDeadline{30};
 
   explicit SendWindow(WireLimits limits);
@@ -37,12 +41,16 @@ class SendWindow {
   bool acknowledge(std::uint64_t total, Time now);
 
   [[nodiscard]] std::uint64_t unacknowledged() const { return sent_ - acknowledged_; }
-  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-  /// The size that a message may have now: one of about four on the way.
+  [[nodiscard]] std::uint64_t bytes(Time now) const {
+    return silent(now) ? limits_.max_unacknowledged_bytes : bytes_;
+  }
+  /// The size that a message may have: one of about four on the way.
   [[nodiscard]] std::size_t batch_bytes() const;
   /// One more of that size may be sent.
-  [[nodiscard]] bool open() const { return unacknowledged() + batch_bytes() <= bytes_; }
-  /// An answer is late: what can wait had better wait.
+  [[nodiscard]] bool open(Time now) const { return unacknowledged() + batch_bytes() <= bytes(now); }
+  /// When more may be sent though nothing is acknowledged until then; nothing if that would change nothing.
+  [[nodiscard]] std::optional<Time> opens_at(Time now) const;
+  /// An answer is late, and they do come: what can wait had better wait.
   [[nodiscard]] bool behind(Time now) const;
   /// Nothing acknowledged for 30 s, though something is owed.
   [[nodiscard]] bool overdue(Time now) const;
@@ -55,6 +63,9 @@ class SendWindow {
     std::uint64_t acknowledged_then;
   };
 
+  [[nodiscard]] bool silent(Time now) const {
+    return !answers_each_ && unacknowledged() > 0 && now - owed_since_ >= kSilent;
+  }
   /// The quickest answer lately, at most kLongestWay.
   [[nodiscard]] Duration way() const;
   void learn(const Message& answered, std::uint64_t was_on_the_way, std::uint64_t newly, Time now);
@@ -64,6 +75,7 @@ class SendWindow {
   std::uint64_t sent_ = 0;
   std::uint64_t acknowledged_ = 0;
   std::deque<Message> on_the_way_;   // oldest first
+  bool answers_each_ = false;        // the last Ack was of one message
   Duration quickest_ = kLongestWay;  // of this while
   Duration quickest_before_ = kLongestWay;
   Time while_began_{};

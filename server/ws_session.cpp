@@ -105,7 +105,7 @@ void WsSession<Stream>::pump() {
   const auto now = steady_clock::now();
   writing_ = protocol_.outbox().next(*context_.state.live, now);
   if (!writing_) {
-    if (const auto time = protocol_.outbox().next_at(*context_.state.live)) wake_at(*time);
+    if (const auto time = protocol_.outbox().next_at(*context_.state.live, now)) wake_at(*time);
     return;
   }
   context_.state.metrics.count_stream_message(writing_->size());

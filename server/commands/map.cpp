@@ -119,6 +119,7 @@ PipelineOptions batch_options(const Options& options, std::int64_t num_frames) {
   batch.max_frames = num_frames;
   batch.statistics_window = 1U << 20U;
   batch.loop_closure = loop_options(options);
+  batch.max_view_bytes = static_cast<std::size_t>(options.view_memory_mb) << 20U;
   return batch;
 }
 

@@ -139,6 +139,7 @@ int serve_source(const Options& options, HubInfo info) {
   pipeline_options.loop = options.source.loop;
   pipeline_options.loop_closure = loop_options(options);
   pipeline_options.keep_views = true;
+  pipeline_options.max_view_bytes = static_cast<std::size_t>(options.view_memory_mb) << 20U;
 
   ServeObserver observer;
   Pipeline pipeline(pipeline_options, std::move(session.source), std::move(session.front_end),

@@ -63,7 +63,7 @@ TEST(ProgramStore, AMapWhoseTilesAreBehindItsPathIsBuiltAnewAtTheNextStart) {
   }
   RunningProgram program(arguments);
   EXPECT_TRUE(program.wait_for_log("is built anew", std::chrono::seconds(5)));
-  EXPECT_GT(revision_of(program), before.revision);
+  EXPECT_TRUE(wait_until([&] { return revision_of(program) > before.revision; }));
   EXPECT_EQ(program.end(SIGTERM), 0);
   const StoredMap after = load_map(store);
   EXPECT_FALSE(after.behind);

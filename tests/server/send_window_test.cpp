@@ -33,13 +33,15 @@ class Line {
         took_s.push_back(duration<double>(now_ - answers_.front().sent_at).count());
       }
       if (message_bytes == 0) {
-        while (window.open()) send(window.batch_bytes());
+        while (window.open(now_)) send(window.batch_bytes());
       } else if (answers_.empty()) {  // one small message at a time
         send(message_bytes);
       }
     }
     return took_s;
   }
+
+  [[nodiscard]] std::uint64_t allowed_bytes() const { return window.bytes(now_); }
 
   SendWindow window{WireLimits{}};
   double sent_bytes = 0;
@@ -89,14 +91,14 @@ TEST(SendWindow, APageThatIsAlwaysLateStillGetsItsShare) {
 TEST(SendWindow, OnAQuickLineItIsAllowedInAMoment) {
   Line line(100e6, milliseconds(1));
   line.fill(milliseconds(50));
-  EXPECT_EQ(line.window.bytes(), WireLimits{}.max_unacknowledged_bytes);
+  EXPECT_EQ(line.allowed_bytes(), WireLimits{}.max_unacknowledged_bytes);
   EXPECT_EQ(line.window.batch_bytes(), WireLimits{}.max_batch_bytes);
 }
 
 TEST(SendWindow, ALongWayIsNotTakenForASlowLine) {
   Line line(20e6, milliseconds(600));
   line.fill(seconds(6));
-  EXPECT_EQ(line.window.bytes(), WireLimits{}.max_unacknowledged_bytes);
+  EXPECT_EQ(line.allowed_bytes(), WireLimits{}.max_unacknowledged_bytes);
 }
 
 TEST(SendWindow, ALineThatTurnsSlowIsNoticed) {
@@ -107,13 +109,13 @@ TEST(SendWindow, ALineThatTurnsSlowIsNoticed) {
   EXPECT_LT(largest(line.fill(seconds(30))), 3.0);
   line.set_rate(10e6);
   line.fill(seconds(2));
-  EXPECT_EQ(line.window.bytes(), WireLimits{}.max_unacknowledged_bytes);
+  EXPECT_EQ(line.allowed_bytes(), WireLimits{}.max_unacknowledged_bytes);
 }
 
 TEST(SendWindow, SmallMessagesSayNothingAboutLargeOnes) {
   Line line(30e3, milliseconds(50));
   line.fill(seconds(30), 500);
-  EXPECT_EQ(line.window.bytes(), SendWindow::kLeastBytes);
+  EXPECT_EQ(line.allowed_bytes(), SendWindow::kLeastBytes);
 }
 
 TEST(SendWindow, ALateAnswerIsKnownBeforeItComes) {
@@ -127,6 +129,38 @@ TEST(SendWindow, ALateAnswerIsKnownBeforeItComes) {
   EXPECT_TRUE(window.behind(start + milliseconds(1500)));
   EXPECT_TRUE(window.acknowledge(2000, start + milliseconds(1600)));
   EXPECT_FALSE(window.behind(start + seconds(9)));
+}
+
+TEST(SendWindow, AClientThatAcknowledgesSeldomStillGetsEverything) {
+  constexpr std::uint64_t kSeldom = 512U << 10U, kAll = 8U << 20U;
+  SendWindow window{WireLimits{}};
+  Time now{std::chrono::hours(1)};
+  std::uint64_t sent = 0, answered = 0;
+  for (const Time end = now + seconds(60); now < end && sent < kAll; now += milliseconds(10)) {
+    while (window.open(now)) {
+      window.sent(window.batch_bytes(), now);
+      sent += window.batch_bytes();
+    }
+    ASSERT_LE(window.unacknowledged(), WireLimits{}.max_unacknowledged_bytes);
+    ASSERT_FALSE(window.overdue(now));
+    if (sent - answered < kSeldom) continue;
+    answered = sent;
+    ASSERT_TRUE(window.acknowledge(answered, now));
+  }
+  EXPECT_GE(sent, kAll);
+}
+
+TEST(SendWindow, WhenItOpensByItselfIsKnown) {
+  SendWindow window{WireLimits{}};
+  const Time start{std::chrono::hours(1)};
+  EXPECT_FALSE(window.opens_at(start));
+  window.sent(SendWindow::kLeastBytes, start);
+  EXPECT_FALSE(window.open(start));
+  const auto opens = window.opens_at(start);
+  ASSERT_TRUE(opens);
+  EXPECT_FALSE(window.open(*opens - milliseconds(1)));
+  EXPECT_TRUE(window.open(*opens));
+  EXPECT_FALSE(window.opens_at(*opens)) << "nobody waits for a time that is past";
 }
 
 TEST(SendWindow, MoreThanWasSentCannotBeAcknowledged) {
