@@ -79,9 +79,9 @@ test('path and walls snap when a loop closes', async ({ page }) => {
     await expect.poll(async () => (await state(page)).rev).toBe(rev);
     const { tiles, more } = await program.json<Changes>('maps/live/changes?since=0&limit=10000');
     expect(more).toBe(false);
-    expect(await revisions(page)).toEqual(tiles.filter(({ level }) => level === 0).map(({ level, x, y, rev: of }): [string, number] => [`${level}/${x}/${y}`, of]).sort());
+    await expect.poll(() => revisions(page)).toEqual(tiles.filter(({ level }) => level === 0).map(({ level, x, y, rev: of }): [string, number] => [`${level}/${x}/${y}`, of]).sort());
     const poses = (await (await fetch(`${program.url}/api/v1/maps/live/trajectory?format=tum`)).text()).trim().split('\n').filter((line) => !line.startsWith('#'));
-    expect((await state(page)).trajectoryLength).toBe(poses.length);
+    await expect.poll(async () => (await state(page)).trajectoryLength).toBe(poses.length);
     const last = poses.at(-1)?.split(' ').slice(1, 4).map(Number) ?? [];
     (await pathOf(page))[1]?.forEach((value, i) => expect(value).toBeCloseTo(last[i] ?? NaN, 3));
     expect(await page.evaluate(() => (window as never as { __same?: boolean }).__same)).toBe(true); // never reloaded
