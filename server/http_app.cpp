@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <exception>
+#include <memory>
 #include <utility>
 
 #include "server/api/json_body.hpp"
@@ -162,7 +163,10 @@ ApiResponse HttpApp::log_in(const ApiRequest& request) {
 }
 
 void HttpApp::run(const std::string& path, ApiJob job, Done done) {
-  auto work = [this, path, job = std::move(job), done] {
+  // Owns the connection, which must end on the network thread even if its client has left meanwhile: handed
+  // on whole, so that nothing of it stays with the worker.
+  auto owner = std::make_shared<Done>(std::move(done));
+  auto work = [this, path, job = std::move(job), owner] {
     const auto start = steady_clock::now();
     ApiResponse response = problem(500, "internal", "a fault of the server");
     try {
@@ -173,7 +177,7 @@ void HttpApp::run(const std::string& path, ApiJob job, Done done) {
       response = fault(path, error);
     }
     const double seconds = std::chrono::duration<double>(steady_clock::now() - start).count();
-    post_([this, seconds, response = std::move(response), done] {
+    post_([this, seconds, response = std::move(response), done = std::exchange(*owner, nullptr)] {
       state_.metrics.observe_query_s(seconds);
       state_.num_waiting_queries = queries_.num_waiting();
       done(response);
@@ -181,7 +185,7 @@ void HttpApp::run(const std::string& path, ApiJob job, Done done) {
   };
   const bool taken = queries_.submit(std::move(work));
   state_.num_waiting_queries = queries_.num_waiting();
-  if (!taken) done(busy());
+  if (!taken) (*owner)(busy());
 }
 
 ApiResponse finished(const ApiRequest& request, ApiResponse response) {
