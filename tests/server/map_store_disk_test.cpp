@@ -2,11 +2,9 @@
 // relents.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-
-#include <csignal>
 
 #include "server/map_store.hpp"
+#include "tests/server/file_limit.hpp"
 #include "tests/server/map_store_support.hpp"
 
 namespace flogmap::testing {
@@ -14,25 +12,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Until its end no file of this process takes a byte.
-class FullDisk {
- public:
-  FullDisk() {
-    std::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit none{0, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &none);
-  }
-  ~FullDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  rlimit before_{};
-};
-
 MapStore opened_on_a_full_disk(const std::filesystem::path& path) {
-  const FullDisk full;
+  const FileLimit full(0);
   return MapStore(path);
 }
 
@@ -46,7 +27,7 @@ TEST(MapStoreDisk, AMapThatCanOnlyBeReadIsThereAndWrittenWhenTheDiskTakesIt) {
     EXPECT_FALSE(store.ended_cleanly());  // should it be killed, nothing tells the next one
     EXPECT_EQ(difference(*store.load(), map), "");
     {
-      const FullDisk full;
+      const FileLimit full(0);
       EXPECT_THAT(error_of([&] { store.begin(map); }), HasSubstr(path.string()));
       store.rollback();
     }

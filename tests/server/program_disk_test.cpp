@@ -7,9 +7,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <memory>
 
+#include "tests/server/file_limit.hpp"
 #include "tests/server/mapping_program.hpp"
 
 namespace flogmap {
@@ -23,23 +23,6 @@ void limit_files_of(const RunningProgram& program, rlim_t bytes) {
   const rlimit limit{bytes, RLIM_INFINITY};
   ASSERT_EQ(::prlimit(program.pid(), RLIMIT_FSIZE, &limit, nullptr), 0);
 }
-
-/// The same for this process and those that it starts, until the end of the scope.
-class FileLimit {
- public:
-  explicit FileLimit(rlim_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);  // inherited: writing beyond the limit is an error, as on a full disk
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-  FileLimit(const FileLimit&) = delete;
-  FileLimit& operator=(const FileLimit&) = delete;
-
- private:
-  rlimit before_{};
-};
 
 std::unique_ptr<RunningProgram> started_within(rlim_t bytes, const std::vector<std::string>& arguments) {
   const FileLimit limit(bytes);
