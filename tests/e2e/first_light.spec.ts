@@ -2,7 +2,7 @@
 import { expect, test, type Page } from '@playwright/test';
 import { rampColour } from '../../web/src/palette';
 import { styleValue, type Style } from '../../web/src/rules';
-import { open, pixels, project, quiet, state, tile, keys } from './flog_page';
+import { keys, open, pixels, project, quiet, sameBytes, state, tile } from './flog_page';
 import { Program } from './program';
 
 const PLANE = 4096;
@@ -45,20 +45,10 @@ test('the room appears and grows while the camera walks', async ({ page }) => {
 test('the page holds the server’s tiles, byte for byte', async ({ page }) => {
   await open(page, program.url);
   await pause(page);
-  const held = (await keys(page)).filter((key) => key.startsWith('0/'));
-  expect(held.length).toBeGreaterThan(3);
-  for (const key of held.slice(0, 12)) {
-    const [level, x, y] = key.split('/').map(Number) as [number, number, number];
-    const mine = await tile(page, level, x, y);
-    for (const layer of [0, 1, 2]) {
-      const served = await program.json<{ rev: number; layers: Record<'E' | 'O' | 'K', number[]>[] }>(`maps/live/layers/${layer}/tiles/${key}?f=json`);
-      expect(served.rev, key).toBe(mine?.rev);
-      for (const [i, plane] of (['E', 'O', 'K'] as const).entries()) {
-        const here = Array.from({ length: PLANE }, (_, column) => mine?.planes[layer * 4 * PLANE + 4 * column + i]);
-        expect(here, `${key} layer ${layer} ${plane}`).toEqual(served.layers[0]?.[plane]);
-      }
-    }
-  }
+  const held = await keys(page);
+  expect(held.filter((key) => key.startsWith('0/')).length).toBeGreaterThan(3);
+  expect(new Set(held.map((key) => key[0])).size).toBeGreaterThan(3); // overviews as well
+  await sameBytes(page, program, held);
 });
 
 interface Column {

@@ -1,6 +1,7 @@
 // The page as tests see it: through window.__flog and through its pixels.
 import { inflateSync } from 'node:zlib';
 import { expect, type Page } from '@playwright/test';
+import type { Program } from './program';
 
 export interface FlogState {
   rev: number;
@@ -21,6 +22,24 @@ export const keys = (page: Page): Promise<string[]> => page.evaluate(() => (wind
 
 export const tile = (page: Page, level: number, x: number, y: number): Promise<{ rev: number; planes: number[] } | null> =>
   page.evaluate(([l, tx, ty]) => (window as never as { __flog: { tile(...at: number[]): { rev: number; planes: number[] } | null } }).__flog.tile(l as number, tx as number, ty as number), [level, x, y]);
+
+const PLANE = 64 * 64;
+
+/** These tiles in the page are the server's, byte for byte. */
+export async function sameBytes(page: Page, program: Program, keysOfTiles: readonly string[]): Promise<void> {
+  for (const key of keysOfTiles) {
+    const [level, x, y] = key.split('/').map(Number) as [number, number, number];
+    const mine = await tile(page, level, x, y);
+    for (const layer of [0, 1, 2]) {
+      const served = await program.json<{ rev: number; layers: Record<'E' | 'O' | 'K', number[]>[] }>(`maps/live/layers/${layer}/tiles/${key}?f=json`);
+      expect(served.rev, key).toBe(mine?.rev);
+      for (const [i, plane] of (['E', 'O', 'K'] as const).entries()) {
+        const here = Array.from({ length: PLANE }, (_, column) => mine?.planes[layer * 4 * PLANE + 4 * column + i]);
+        expect(here, `${key} layer ${layer} ${plane}`).toEqual(served.layers[0]?.[plane]);
+      }
+    }
+  }
+}
 
 export const project = (page: Page, x: number, y: number): Promise<{ x: number; y: number }> =>
   page.evaluate(([wx, wy]) => (window as never as { __flog: { project(...at: number[]): { x: number; y: number } } }).__flog.project(wx as number, wy as number), [x, y]);

@@ -1,5 +1,6 @@
 // hub_demo PORT SECONDS [WEB_ROOT [HOUSES | CERT KEY]]: a synthetic map, growing, through the real Hub; of
-// one house, or of HOUSES alike, each of about 60 tiles, all of which change alike. See README.md.
+// one house, or of HOUSES alike, each of about 60 tiles: in the first round all of them grow at once, then the
+// camera walks a round in one after the other. See README.md.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -18,10 +19,11 @@ using std::chrono::steady_clock;
 
 constexpr int kHouseTilesX = 11, kHouseTilesY = 8, kHousesInARow = 4;
 
-/// What happens in one house happens in all.
-std::vector<TileUpdate> in_every_house(const std::vector<TileUpdate>& tiles, int num_houses) {
+/// What happens in one house happens in all; after the first round, in that of the round.
+std::vector<TileUpdate> in_houses(const std::vector<TileUpdate>& tiles, int num_houses, int round) {
   std::vector<TileUpdate> all;
   for (int house = 0; house < num_houses; ++house) {
+    if (round > 0 && house != round % num_houses) continue;
     const int dx = kHouseTilesX * (house % kHousesInARow), dy = kHouseTilesY * (house / kHousesInARow);
     for (TileUpdate update : tiles) {
       update.index = {update.index.x + dx, update.index.y + dy};
@@ -45,7 +47,8 @@ void walk(Hub& hub, FakeSession& session, int num_houses, std::chrono::seconds d
       hub.begin(walk.begin("demo00000000000" + std::to_string(++epoch % 10), "reset by operator"));
     }
     if (!session.playback().paused || session.take_steps() > 0) {
-      auto tiles = in_every_house(walk.step(), num_houses);
+      const int round = static_cast<int>(walk.num_steps() / SyntheticWalk::kStepsPerRound);
+      auto tiles = in_houses(walk.step(), num_houses, round);
       if (!tiles.empty()) hub.publish(walk.revision(), std::move(tiles));
       hub.publish_tracking(walk.tracking());
       if (hub.wants_pictures()) hub.publish_pictures(walk.pictures());

@@ -71,7 +71,7 @@ export class Decoder {
     const planes = new Uint8Array(this.layerIds.length * BYTES_PER_LAYER);
     for (const layer of wire.layers) {
       const index = this.layerIds.indexOf(layer.layer);
-      if (index >= 0) interleave(layer, planes.subarray(index * BYTES_PER_LAYER, (index + 1) * BYTES_PER_LAYER));
+      if (index >= 0) interleave(layer, new Uint32Array(planes.buffer, index * BYTES_PER_LAYER, PLANE));
     }
     return { ...plainKey(wire.key), rev: wire.rev, planes };
   }
@@ -85,23 +85,34 @@ export function transferables(event: StreamEvent): ArrayBuffer[] {
 
 const plainKey = (key: { level: number; x: number; y: number } | undefined): TileKey => ({ level: key?.level ?? 0, x: key?.x ?? 0, y: key?.y ?? 0 });
 
-/** Planes one after the other to (E, O, K, C) per cell. With M alone: O = M, E = 1 - M where known is not told, K = 1. */
-function interleave(layer: LayerPlanes, into: Uint8Array): void {
+const LITTLE_ENDIAN = new Uint8Array(new Uint32Array([1]).buffer)[0] === 1;
+const SHIFTS = LITTLE_ENDIAN ? [0, 8, 16, 24] : [24, 16, 8, 0]; // of E, O, K, C in a word
+const [toE = 0, toO = 0, toK = 0, toC = 0] = SHIFTS;
+// Used again for every plane; one byte more than fits, so that a plane that is too long is noticed.
+const scratch = { planes: new Uint8Array(3 * PLANE + 1), change: new Uint8Array(PLANE + 1) };
+const NONE = new Uint8Array(PLANE);
+
+/** Planes one after the other to (E, O, K, C) per cell, a word each. With M alone: O = M, E = 1 - M where known is not told, K = 1. */
+function interleave(layer: LayerPlanes, into: Uint32Array): void {
+  const change = layer.change.length > 0 ? inflate(layer.change, scratch.change, PLANE) : NONE;
   if (layer.planes.case === 'evidence') {
-    const evidence = inflate(layer.planes.value, 3 * PLANE);
-    for (let plane = 0; plane < 3; ++plane)
-      for (let i = 0; i < PLANE; ++i) into[4 * i + plane] = evidence[plane * PLANE + i] ?? 0;
-  } else if (layer.planes.case === 'value') {
-    const value = inflate(layer.planes.value, PLANE);
-    for (let i = 0; i < PLANE; ++i) into.set([255 - (value[i] ?? 0), value[i] ?? 0, 255], 4 * i);
+    const planes = inflate(layer.planes.value, scratch.planes, 3 * PLANE);
+    for (let i = 0; i < PLANE; ++i) {
+      into[i] = ((planes[i] ?? 0) << toE) | ((planes[PLANE + i] ?? 0) << toO) | ((planes[2 * PLANE + i] ?? 0) << toK) | ((change[i] ?? 0) << toC);
+    }
+  } else {
+    const known = layer.planes.case === 'value';
+    const values = known ? inflate(layer.planes.value as Uint8Array, scratch.planes, PLANE) : NONE;
+    for (let i = 0; i < PLANE; ++i) {
+      const value = values[i] ?? 0;
+      into[i] = (known ? ((255 - value) << toE) | (value << toO) | (255 << toK) : 0) | ((change[i] ?? 0) << toC);
+    }
   }
-  if (layer.change.length === 0) return;
-  const change = inflate(layer.change, PLANE);
-  for (let i = 0; i < PLANE; ++i) into[4 * i + 3] = change[i] ?? 0;
 }
 
-function inflate(deflated: Uint8Array, size: number): Uint8Array {
-  const bytes = unzlibSync(deflated);
+/** Throws if it is not just `size` bytes. */
+function inflate(deflated: Uint8Array, into: Uint8Array, size: number): Uint8Array {
+  const bytes = unzlibSync(deflated, { out: into.subarray(0, size + 1) });
   if (bytes.length !== size) throw new Error(`a plane has ${bytes.length} bytes, not ${size}`);
   return bytes;
 }

@@ -3,6 +3,7 @@
 import type { ImageEvent, StreamEvent } from './decode';
 import type { MapInfo, TrajectoryPoint } from './gen/flogmap/v1/map_pb';
 import type { CameraModel, CellColumn, Features, ImageStream, Playback, Pose, Status } from './gen/flogmap/v1/stream_pb';
+import { Path } from './path';
 import { Signal } from './signal';
 import { TileStore, type TileKey } from './tile_store';
 import type { Rect } from './viewport';
@@ -20,7 +21,7 @@ export class LiveMap {
   serverVersion = '';
   rev = 0n;
   pose: Pose | null = null;
-  trajectory: TrajectoryPoint[] = [];
+  readonly path = new Path();
   status: Status | null = null;
   playback: Playback | null = null;
   features: Features | null = null;
@@ -76,10 +77,9 @@ export class LiveMap {
         if (message.value.reason) this.noticed.emit({ tone: 'info', text: `A new map begins: ${message.value.reason}.` });
         break;
       case 'pose': this.poseChanged.emit((this.pose = message.value)); break;
-      case 'trajectoryAppend': this.append(Number(message.value.first), message.value.points); break;
+      case 'trajectoryAppend': this.putPath(Number(message.value.first), message.value.points); break;
       case 'trajectoryRewrite':
-        this.trajectory = message.value.points;
-        this.trajectoryChanged.emit({ from: 0 });
+        this.putPath(0, message.value.points);
         if (message.value.reason) this.noticed.emit({ tone: 'info', text: `The path was corrected: ${message.value.reason}.` });
         break;
       case 'features': this.featuresChanged.emit((this.features = message.value)); break;
@@ -94,17 +94,16 @@ export class LiveMap {
     this.info = info;
     this.rev = info.rev;
     this.tiles.clear();
-    this.trajectory = [];
+    this.path.put(0, []);
     this.pose = this.column = this.features = null;
     this.begun.emit(info);
     this.trajectoryChanged.emit({ from: 0 });
   }
 
   /** Points that are here already are overwritten; a gap (never sent by a sound server) is refused. */
-  private append(first: number, points: readonly TrajectoryPoint[]): void {
-    if (first > this.trajectory.length) return;
-    this.trajectory.length = first;
-    this.trajectory.push(...points);
+  private putPath(first: number, points: readonly TrajectoryPoint[]): void {
+    if (first > this.path.length) return;
+    this.path.put(first, points);
     this.trajectoryChanged.emit({ from: first });
   }
 }

@@ -42,8 +42,8 @@ const connection = new Connection({
   openSocket: () => mock?.openSocket() ?? openWebSocket(),
   decode: (bytes, number) => decoder.postMessage({ connection: number, bytes } satisfies DecodeRequest, [bytes]),
   clock: { now: () => Date.now(), after: (ms, action) => { const id = setTimeout(action, ms); return () => clearTimeout(id); } },
-  trajectoryLength: () => live.trajectory.length,
-  restMs: () => (view.pacer.lateMs > SMOOTH_MS ? REST_PER_LATE * view.pacer.lateMs : 0),
+  trajectoryLength: () => live.path.length,
+  restMs: () => (view.picture.pacer.lateMs > SMOOTH_MS ? REST_PER_LATE * view.picture.pacer.lateMs : 0),
 });
 decoder.onmessage = ({ data }: MessageEvent<DecodeAnswer>) => {
   if (data.event) connection.received(data.connection, data.size, data.event);

@@ -1,6 +1,7 @@
 // window.__flog: what end-to-end tests look at. Read only.
 
 import type { Page } from './page';
+import { keyText } from './tile_store';
 import type { WalkState } from './scene/walkthrough';
 
 export interface TestHook {
@@ -11,6 +12,8 @@ export interface TestHook {
   readonly trajectoryLength: number;
   readonly shownTiles: number;
   readonly walk: WalkState & { readonly position: readonly number[]; readonly yaw: number };
+  /** When pictures of the map were drawn lately, ms. */
+  readonly pictures: readonly number[];
   tiles(): number;
   /** Of tiles in memory, and of their textures on the graphics card. */
   readonly tileBytes: number;
@@ -20,6 +23,8 @@ export interface TestHook {
   /** Where the path begins and ends. */
   readonly path: readonly (readonly number[])[];
   keys(): string[];
+  /** Of every tile held. */
+  revisions(): [key: string, rev: number][];
   /** E, O, K, C per cell and layer as held, or null. */
   tile(level: number, x: number, y: number): { rev: number; planes: number[] } | null;
   /** CSS pixel of a world point on the canvas. */
@@ -35,15 +40,17 @@ export function installTestHook(page: Page): void {
     get epoch() { return live.info?.epoch ?? ''; },
     get state() { return connection.state.phase; },
     get fps() { return view.fps; },
-    get trajectoryLength() { return live.trajectory.length; },
+    get trajectoryLength() { return live.path.length; },
     get shownTiles() { return view.tiles.shown.length; },
     get walk() { return { ...page.walk.state, position: page.walk.walker.position, yaw: page.walk.walker.yaw }; },
+    get pictures() { return view.picture.times; },
     tiles: () => live.tiles.count,
     get tileBytes() { return live.tiles.bytes; },
     get textureBytes() { return view.tiles.textureBytes; },
     get poseS() { return Number(live.pose?.timeNs ?? 0n) / 1e9; },
-    get path() { return [live.trajectory[0], live.trajectory.at(-1)].map((point) => (point?.pose ? [point.pose.x, point.pose.y, point.pose.z] : [])); },
-    keys: () => Array.from(live.tiles.all(), (tile) => `${tile.level}/${tile.x}/${tile.y}`),
+    get path() { return [live.path.at(0), live.path.at(-1)].map((point) => (point?.pose ? [point.pose.x, point.pose.y, point.pose.z] : [])); },
+    keys: () => Array.from(live.tiles.all(), keyText),
+    revisions: () => Array.from(live.tiles.all(), (tile) => [keyText(tile), Number(tile.rev)]),
     tile: (level, x, y) => {
       const tile = live.tiles.get({ level, x, y });
       return tile ? { rev: Number(tile.rev), planes: Array.from(tile.planes) } : null;

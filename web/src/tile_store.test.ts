@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { seededRandom } from './seeded_random';
-import { BYTES_PER_LAYER, columnAt, keyText, locate, tileRect, tilesToDraw, TileStore, type Tile } from './tile_store';
+import { BYTES_PER_LAYER, columnAt, keyText, locate, tileRect, TileStore, type Tile } from './tile_store';
 
 const tile = (level: number, x: number, y: number, rev: number, layers = 1): Tile => ({ level, x, y, rev: BigInt(rev), planes: new Uint8Array(layers * BYTES_PER_LAYER) });
 
@@ -58,14 +58,6 @@ describe('tile store', () => {
     store.apply(one);
     expect(columnAt(store, -0.01, 0.01, 0.02)?.[1]).toEqual({ E: 10 / 255, O: 20 / 255, K: 30 / 255, C: 40 / 255 });
     expect(columnAt(store, 5, 5, 0.02)).toBeUndefined();
-  });
-
-  it('draws the wanted level, and finer tiles where it is missing, coarse ones below', () => {
-    const store = new TileStore(1e9);
-    for (const one of [tile(0, 0, 0, 1), tile(0, 1, 0, 1), tile(1, 0, 0, 1), tile(0, 2, 0, 1), tile(2, 0, 0, 1)]) store.apply(one);
-    const rect = { xMin: -100, yMin: -100, xMax: 100, yMax: 100 };
-    expect(tilesToDraw(store, rect, 1, 0.02).map(keyText)).toEqual(['0/2/0', '1/0/0', '2/0/0']);
-    expect(tilesToDraw(store, { xMin: 50, yMin: 50, xMax: 60, yMax: 60 }, 1, 0.02)).toEqual([]);
   });
 
   it('lays tiles of every level edge to edge', () => {

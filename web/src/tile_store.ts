@@ -116,31 +116,6 @@ export class TileStore {
   }
 }
 
-/**
- * The tiles to draw where `rect` is on screen: those of `level`, and where the level has none, finer tiles that stand in
- * for it, and under them coarser ones. Fine first: what they cover need not be painted.
- */
-export function tilesToDraw(store: TileStore, rect: Rect, level: number, cellSize: number): Tile[] {
-  const drawn: Tile[] = [];
-  for (const tile of store.all()) {
-    if (!overlaps(tileRect(tile, cellSize), rect)) continue;
-    if (tile.level === level || !hasTileOfLevel(store, tile, level)) drawn.push(tile);
-  }
-  return drawn.sort((a, b) => a.level - b.level || a.y - b.y || a.x - b.x);
-}
-
-function hasTileOfLevel(store: TileStore, tile: Tile, level: number): boolean {
-  if (tile.level > level) return false; // a coarse tile lies below finer ones: harmless where they are, needed where not
-  const shift = level - tile.level;
-  return store.get({ level, x: tile.x >> shift, y: tile.y >> shift }) !== undefined;
-}
-
-/** Without the coarser tiles of which a part is there in finer ones: what stands up has no under. */
-export function withoutStandIns(store: TileStore, tiles: readonly Tile[], level: number): Tile[] {
-  const hasChild = (tile: Tile): boolean => [0, 1, 2, 3].some((i) => store.get({ level: tile.level - 1, x: 2 * tile.x + (i % 2), y: 2 * tile.y + (i >> 1) }) !== undefined);
-  return tiles.filter((tile) => tile.level <= level || !hasChild(tile));
-}
-
 /** Where a world point lies: its tile of `level` and the index of its column within, row-major. */
 export function locate(x: number, y: number, level: number, cellSize: number): { key: TileKey; column: number } {
   const cell = cellSize * 2 ** level;

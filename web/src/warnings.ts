@@ -1,16 +1,12 @@
 // What is wrong and what to do, told from the pictures and the path alone. Pure; the server adds its own.
 
 import type { PoseValue } from './gen/flogmap/v1/map_pb';
+import type { PathPoints } from './path';
 
 /** Of a picture, in grey levels 0 .. 255. */
 export interface Light {
   readonly mean: number;
   readonly spread: number; // standard deviation
-}
-
-interface Timed {
-  readonly timeNs: bigint;
-  readonly pose?: PoseValue | undefined;
 }
 
 const FLAT = 6; // below, nothing can be matched
@@ -49,8 +45,8 @@ function turned(a: PoseValue, b: PoseValue): number {
 }
 
 /** Over the last two poses of the path, if they follow one another closely. */
-export function speedWarnings(path: readonly Timed[]): string[] {
-  const [before, now] = path.slice(-2);
+export function speedWarnings(path: PathPoints): string[] {
+  const [before, now] = [path.at(-2), path.at(-1)];
   const seconds = before && now ? Number(now.timeNs - before.timeNs) / 1e9 : 0;
   if (!before?.pose || !now?.pose || seconds <= 0 || seconds > WITHIN_S) return [];
   if (turned(before.pose, now.pose) / seconds > FAST_RAD_PER_S) return ['Turning too fast. Turn slowly, so that pictures overlap and stay sharp.'];

@@ -162,11 +162,11 @@ export class LevelTool {
 
 /** Where the camera was at that time, as the path now has it. */
 function poseAt({ live }: Page, timeNs: bigint): PoseValue | undefined {
-  for (let i = live.trajectory.length - 1; i >= 0; --i) {
-    const point = live.trajectory[i];
+  for (let i = live.path.length - 1; i >= 0; --i) {
+    const point = live.path.at(i);
     if (point && point.timeNs <= timeNs) return point.pose;
   }
-  return live.trajectory[0]?.pose;
+  return live.path.at(0)?.pose;
 }
 
 const rounded = ({ roll, pitch, yaw, height }: Level): Level => {

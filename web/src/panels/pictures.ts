@@ -109,12 +109,12 @@ function showAge(page: Page, stream: ImageStream, age: HTMLElement): void {
   if (!image) return;
   const ms = performance.now() - image.receivedAt;
   age.classList.toggle('old', ms > STALE_AFTER_MS);
-  setText(age, ms > STALE_AFTER_MS ? `${Math.round(ms / 1000)} s old` : `t = ${(Number((image.timeNs - (page.live.trajectory[0]?.timeNs ?? image.timeNs)) / 1000000n) / 1000).toFixed(1)} s`);
+  setText(age, ms > STALE_AFTER_MS ? `${Math.round(ms / 1000)} s old` : `t = ${(Number((image.timeNs - (page.live.path.at(0)?.timeNs ?? image.timeNs)) / 1000000n) / 1000).toFixed(1)} s`);
 }
 
 function paint(page: Page, canvas: HTMLCanvasElement, bitmap: ImageBitmap, stream: ImageStream): void {
   if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) Object.assign(canvas, { width: bitmap.width, height: bitmap.height });
-  const context = canvas.getContext('2d');
+  const context = canvas.getContext('2d', { willReadFrequently: true }); // in memory: the depth under the cursor is read from it
   if (!context) return;
   context.drawImage(bitmap, 0, 0);
   const image = page.live.images.get(stream);

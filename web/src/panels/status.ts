@@ -1,8 +1,9 @@
 // How the session is doing: state, rates, sizes, stage times, and warnings in words.
 
-import { TrackingState, type TrajectoryPoint } from '../gen/flogmap/v1/map_pb';
+import { TrackingState } from '../gen/flogmap/v1/map_pb';
 import { ImageStream, type PairSkew, type Status } from '../gen/flogmap/v1/stream_pb';
 import type { Page } from '../page';
+import type { Path } from '../path';
 import { h, setText } from '../ui/dom';
 import { icon } from '../ui/icons';
 import { section } from '../ui/controls';
@@ -28,7 +29,7 @@ export function statusPanel(page: Page, charts: Node): HTMLElement {
   let received = { bytes: 0, at: performance.now(), rate: 0 };
   const meter = pathMeter();
   let metres = 0;
-  page.live.trajectoryChanged.on(({ from }) => (metres = meter(page.live.trajectory, from)));
+  page.live.trajectoryChanged.on(({ from }) => (metres = meter(page.live.path, from)));
   let due = 0;
   const show = (): void => {
     const now = performance.now();
@@ -53,38 +54,37 @@ export function statusPanel(page: Page, charts: Node): HTMLElement {
 
 /** The server's warnings, and why tracking is not good. */
 export function warningsOf(page: Page): string[] {
-  const { status, pose, lights, trajectory } = page.live;
+  const { status, pose, lights, path } = page.live;
   const tracking = pose && (pose.state === TrackingState.LOST || pose.state === TrackingState.WEAK)
     ? [`Tracking ${TRACKING_WORDS[pose.state]}${pose.reason ? `: ${pose.reason}` : ''}.${pose.state === TrackingState.LOST ? ' Point the camera back at something it has seen.' : ''}`]
     : [];
   const running = status?.sessionState === 'running';
-  const own = running ? [...lightWarnings(lights.get(ImageStream.LEFT), lights.get(ImageStream.RIGHT)), ...speedWarnings(trajectory)] : [];
+  const own = running ? [...lightWarnings(lights.get(ImageStream.LEFT), lights.get(ImageStream.RIGHT)), ...speedWarnings(path)] : [];
   return [...tracking, ...own, ...(status?.warnings ?? [])];
 }
 
 /** Length of a path that grows: only what came since the last look is added. */
-export function pathMeter(): (points: readonly TrajectoryPoint[], from: number) => number {
-  let sums: number[] = [];
-  return (points, from) => {
-    sums.length = Math.min(sums.length, Math.max(0, from));
-    for (let i = sums.length; i < points.length; ++i) {
-      const [a, b] = [points[i - 1]?.pose, points[i]?.pose];
-      sums.push((sums[i - 1] ?? 0) + (a && b ? Math.hypot(b.x - a.x, b.y - a.y) : 0));
+export function pathMeter(): (path: Path, from: number) => number {
+  let [metres, measured] = [0, 0];
+  return (path, from) => {
+    if (from < measured) [metres, measured] = [0, 0];
+    for (let i = Math.max(1, measured); i < path.length; ++i) {
+      if (path.hasPose(i - 1) && path.hasPose(i)) metres += Math.hypot(path.place(i, 0) - path.place(i - 1, 0), path.place(i, 1) - path.place(i - 1, 1));
     }
-    if (points.length === 0) sums = [];
-    return sums.at(-1) ?? 0;
+    measured = path.length;
+    return metres;
   };
 }
 
 function factsOf(page: Page, bytesPerSecond: number, metres: number): readonly (readonly [string, string])[] {
-  const { status, pose, tiles, trajectory, rev } = page.live;
+  const { status, pose, tiles, path, rev } = page.live;
   const alignment = status?.alignment ? [['Heights from', status.alignment] as const] : [];
   return [
     ['Tracking', pose ? `${TRACKING_WORDS[pose.state]}, ${pose.inliers} inliers` : '–'],
     ['Frames', status ? `${status.framesPerS.toFixed(1)} /s, ${status.frames} in all` : '–'],
     ['Mapped views', status ? `${status.mappedViews}${status.loops > 0n ? `, ${status.loops} loops` : ''}` : '–'],
     ['Lost, dropped', status ? `${status.lost}, ${status.droppedFrames + status.skippedFrames}` : '–'],
-    ['Path', `${metres.toFixed(1)} m, ${trajectory.length} poses`],
+    ['Path', `${metres.toFixed(1)} m, ${path.length} poses`],
     ['Map on server', status ? `${status.tiles} tiles, ${formatBytes(Number(status.mapBytes))}` : '–'],
     ['Map in page', `${tiles.count} tiles, ${formatBytes(tiles.bytes)}`],
     ['Received', `${formatBytes(bytesPerSecond)}/s, revision ${rev}`],

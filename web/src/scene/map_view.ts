@@ -1,6 +1,6 @@
 // The map on screen. Holds the viewport, draws at most once per animation frame and only when something changed.
 
-import { Color, Mesh, Scene, WebGLRenderer } from 'three';
+import { Color, Mesh, Scene, type WebGLRenderer } from 'three';
 import { heading } from '../geometry';
 import { ImageStream } from '../gen/flogmap/v1/stream_pb';
 import type { Reach } from '../backend';
@@ -12,12 +12,11 @@ import { Signal, type Store } from '../signal';
 import type { TileKey } from '../tile_store';
 import { fit, pan, wrapAngle, zoomAt, type Point, type Viewport } from '../viewport';
 import { CameraMarker } from './camera_marker';
-import { FramePacer } from './frame_pacer';
 import { Glide } from './glide';
-import { hasGraphicsCard } from './graphics_card';
 import { GridLines } from './grid_lines';
 import { applySettings, groundMaterial, mapUniforms, setUniform, tileRules, type MapUniforms } from './map_material';
 import { PathLine } from './path_line';
+import { Picture } from './picture';
 import { place } from './place_group';
 import { ReachLayer } from './reach_layer';
 import { unitQuad } from './tile_meshes';
@@ -36,10 +35,10 @@ export class MapView {
   readonly drawn = new Signal<Viewport>();
   /** The part of the world that is shown has changed. */
   readonly moved = new Signal<Viewport>();
-  readonly canvas: HTMLCanvasElement;
   readonly tiles: TileScene;
 
-  private readonly renderer: WebGLRenderer;
+  readonly picture = new Picture((now) => this.draw(now));
+  private readonly renderer: WebGLRenderer = this.picture.renderer;
   private readonly scene = new Scene();
   private readonly uniforms: MapUniforms = mapUniforms();
   private readonly path = new PathLine();
@@ -48,7 +47,6 @@ export class MapView {
   private readonly reach = new ReachLayer();
   private readonly ground = new Mesh(unitQuad(), groundMaterial(this.uniforms));
   private walkthrough: Walkthrough | null = null;
-  readonly pacer = new FramePacer((now) => this.draw(now));
   private held = false;
   private stale = { tiles: true, path: true, settings: true };
   private readonly glide = new Glide();
@@ -57,17 +55,19 @@ export class MapView {
   private theme: Theme = 'dark';
 
   constructor(private readonly holder: HTMLElement, private readonly live: LiveMap, private readonly settings: Store<Settings>) {
-    this.renderer = new WebGLRenderer({ antialias: window.devicePixelRatio < 1.5 && hasGraphicsCard(), powerPreference: 'high-performance' });
-    this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     holder.prepend(this.canvas);
-    this.tiles = new TileScene(this.renderer, live, this.uniforms, tileRules(settings.get(), live.info));
+    this.tiles = new TileScene(this.picture, live, this.uniforms, tileRules(settings.get(), live.info));
     this.ground.frustumCulled = false;
     this.ground.renderOrder = 1; // after all that hides it
     this.scene.add(this.ground, this.tiles.group, this.reach.mesh, this.grid.mesh, this.path.group, this.marker.group);
     new ResizeObserver(() => this.resize()).observe(holder);
     this.resize();
     this.listen();
+  }
+
+  get canvas(): HTMLCanvasElement {
+    return this.picture.canvas;
   }
 
   setTheme(theme: Theme): void {
@@ -77,7 +77,7 @@ export class MapView {
   }
 
   requestDraw(): void {
-    this.pacer.request();
+    this.picture.request();
   }
 
   /** Looks through a walker's eye instead of down on the map; null: back to the map. */
@@ -113,6 +113,7 @@ export class MapView {
 
   /** Moves the view by hand: it stays where the person puts it. */
   moveTo(view: Viewport): void {
+    this.picture.movedByHand();
     this.touchedByUser = true;
     this.glide.target = null;
     if (this.settings.get().follow !== 'free' && Math.hypot(view.x - this.viewport.x, view.y - this.viewport.y) * view.scale > 1) this.settings.set({ follow: 'free' });
@@ -224,8 +225,7 @@ export class MapView {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.holder;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
-    this.renderer.setSize(width, height);
+    this.picture.resize(width, height);
     this.path.resize(width, height);
     this.setViewport({ ...this.viewport, width, height });
     if (this.glide.target) this.glide.target = { ...this.glide.target, width, height };
@@ -253,6 +253,7 @@ export class MapView {
     const settings = this.settings.get();
     if (this.stale.settings) this.refreshColours(settings);
     setUniform(this.uniforms, 'uQuiet', 1); // the floor keeps in the background
+    setUniform(this.uniforms, 'uPixelRatio', this.renderer.getPixelRatio());
     this.grid.mesh.visible = false;
     const brought = !this.live.info || this.tiles.show({ ...this.viewport, x, y, turn: 0, scale: WALK_SCALE }, this.live.info, { ...settings, solid: false }, walk.floor);
     this.stale.settings = false;
@@ -266,10 +267,11 @@ export class MapView {
     const { info } = this.live;
     if (this.stale.settings) this.refreshColours(settings);
     setUniform(this.uniforms, 'uQuiet', 0);
+    setUniform(this.uniforms, 'uPixelRatio', this.renderer.getPixelRatio());
     const brought = !this.stale.tiles || !info || this.tiles.show(this.viewport, info, settings);
     if (!brought) this.requestDraw();
     const pathDue = this.stale.settings || performance.now() >= this.path.restsUntil();
-    if (this.stale.path && pathDue && !this.held) this.path.update(settings.showPath ? this.live.trajectory : [], settings.pathBy);
+    if (this.stale.path && pathDue && !this.held) this.path.update(settings.showPath ? this.live.path : undefined, settings.pathBy);
     const pathLater = this.stale.path && !pathDue;
     this.path.setScale(this.viewport.scale);
     this.stale = { tiles: !brought, path: pathLater, settings: false };
@@ -284,7 +286,6 @@ export class MapView {
   private refreshColours(settings: Settings): void {
     applySettings(this.uniforms, settings, this.theme, this.live.info);
     this.tiles.setRules(tileRules(settings, this.live.info));
-    setUniform(this.uniforms, 'uPixelRatio', this.renderer.getPixelRatio());
     const colours = classColours(settings.palette, this.theme);
     const [r, g, b] = colours.free;
     this.grid.setInk(0.3 * r + 0.6 * g + 0.1 * b < 128);

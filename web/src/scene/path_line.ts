@@ -1,10 +1,10 @@
-// The way the camera went: a line with a dark or light casing, coloured by time or by how well it was tracked.
+// The way the camera went: a line with a dark casing, coloured by time or by how well it was tracked.
 
-import { BufferAttribute, BufferGeometry, Color, Group, Points, PointsMaterial } from 'three';
-import { Line2 } from 'three/examples/jsm/lines/Line2.js';
-import { LineGeometry } from 'three/examples/jsm/lines/LineGeometry.js';
-import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
-import { TrackingState, type TrajectoryPoint } from '../gen/flogmap/v1/map_pb';
+import { BufferAttribute, BufferGeometry, Color, GLSL3, Group, InstancedBufferGeometry, InstancedInterleavedBuffer, InterleavedBufferAttribute, Mesh, Points, PointsMaterial, ShaderMaterial, Vector2 } from 'three';
+import { TrackingState } from '../gen/flogmap/v1/map_pb';
+import type { Path } from '../path';
+import { CORNER, drawnPath, drawnViews } from '../path_thinning';
+import { unitQuad } from './tile_meshes';
 
 const OLD = new Color('#8b6cff');
 const NEW = new Color('#ff8a1f');
@@ -14,18 +14,61 @@ export const STATE_COLOURS: Record<TrackingState, Color> = {
   [TrackingState.WEAK]: new Color('#ffd23f'),
   [TrackingState.LOST]: new Color('#ff3b5c'),
 };
+const CORNERS_APART_PX = 1.5;
 const DOTS_APART_PX = 14;
-const MAX_POINTS = 20000; // of the line; longer paths are thinned
+const DOT_M = 0.02; // nothing is drawn closer together
+
+// A straight piece is a rectangle around it; what is further from the piece than half its width is not painted: round ends.
+const VERTEX = /* glsl */ `
+in vec4 start; in float state; in vec4 end;  // x, y, z, seconds
+uniform vec2 uScreen; uniform float uHalf; uniform float uSeconds; uniform bool uByState; uniform vec3 uStates[8]; uniform vec3 uOld; uniform vec3 uNew;
+out vec2 vFrom; flat out vec2 vAlong; out vec3 vInk;
+vec3 ink(float seconds) { return uByState ? uStates[int(state)] : mix(uOld, uNew, clamp(seconds / uSeconds, 0.0, 1.0)); }
+void main() {
+  const float NEAR = 0.02;
+  vec4 a = projectionMatrix * modelViewMatrix * vec4(start.xyz, 1.0);
+  vec4 b = projectionMatrix * modelViewMatrix * vec4(end.xyz, 1.0);
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // nowhere
+  if (state < 0.0 || max(a.w, b.w) < NEAR) return;
+  if (a.w < NEAR) a = mix(a, b, (NEAR - a.w) / (b.w - a.w));  // the part before the eye
+  if (b.w < NEAR) b = mix(b, a, (NEAR - b.w) / (a.w - b.w));
+  vec2 from = a.xy / a.w * 0.5 * uScreen;
+  vec2 to = b.xy / b.w * 0.5 * uScreen;
+  vec2 ahead = distance(from, to) > 1e-4 ? normalize(to - from) : vec2(1.0, 0.0);
+  vec2 reach = (uHalf + 1.0) * (position.xy * 2.0 - 1.0);
+  vec2 at = (position.x < 0.5 ? from : to) + reach.x * ahead + reach.y * vec2(-ahead.y, ahead.x);
+  vFrom = at - from;
+  vAlong = to - from;
+  vInk = ink(position.x < 0.5 ? start.w : end.w);
+  gl_Position = vec4(at / (0.5 * uScreen), 0.0, 1.0);
+}`;
+
+const FRAGMENT = /* glsl */ `
+precision highp float;
+uniform float uHalf; uniform vec4 uCasing;
+in vec2 vFrom; flat in vec2 vAlong; in vec3 vInk;
+out vec4 colour;
+void main() {
+  float along = clamp(dot(vFrom, vAlong) / max(dot(vAlong, vAlong), 1e-9), 0.0, 1.0);
+  float cover = clamp(uHalf + 0.5 - distance(vFrom, along * vAlong), 0.0, 1.0);
+  if (cover <= 0.0) discard;
+  colour = vec4(mix(vInk, uCasing.rgb, uCasing.a), cover);
+}`;
+
+type Line = Mesh<InstancedBufferGeometry, ShaderMaterial>;
+const srgb = (colour: Color): Color => new Color().copyLinearToSRGB(colour); // written to the screen as it is
 
 export class PathLine {
   readonly group = new Group();
-  private points: readonly TrajectoryPoint[] = [];
-  private spacing = 0.1; // metres
+  private path: Path | undefined;
+  private scale = 0; // CSS pixels per metre that the corners were chosen for
   private cost = 0; // ms, of the last update
   private drawnAt = 0;
-  private readonly casing = new LineMaterial({ color: '#000000', linewidth: 4.5, transparent: true, opacity: 0.45, depthTest: false });
-  private readonly ink = new LineMaterial({ vertexColors: true, linewidth: 2.5, transparent: true, depthTest: false });
-  private readonly lines: [Line2, Line2] = [new Line2(new LineGeometry(), this.casing), new Line2(new LineGeometry(), this.ink)];
+  private readonly uniforms = {
+    uScreen: { value: new Vector2(1, 1) }, uSeconds: { value: 1 }, uByState: { value: false }, uOld: { value: srgb(OLD) }, uNew: { value: srgb(NEW) },
+    uStates: { value: Array.from({ length: 8 }, (_, state) => srgb(STATE_COLOURS[state as TrackingState] ?? NEW)) },
+  };
+  private readonly lines: [Line, Line] = [this.line(2.25, [0.07, 0.08, 0.1, 1]), this.line(1.25, [0, 0, 0, 0])];
   private readonly dots = new Points(new BufferGeometry(), new PointsMaterial({ size: 3.5, sizeAttenuation: false, color: '#ffffff', depthTest: false, transparent: true, opacity: 0.8 }));
 
   constructor() {
@@ -38,23 +81,13 @@ export class PathLine {
     this.group.add(...this.lines, this.dots);
   }
 
-  update(points: readonly TrajectoryPoint[], by: 'time' | 'state'): void {
+  /** Undefined: no path is to be seen. */
+  update(path: Path | undefined, by: 'time' | 'state'): void {
     const start = performance.now();
-    const step = Math.max(1, Math.ceil(points.length / MAX_POINTS));
-    const shown = points.filter((point, i) => point.pose && (i % step === 0 || i === points.length - 1));
-    this.group.visible = shown.length > 1;
-    if (shown.length < 2) return;
-    const positions = shown.flatMap(({ pose }) => (pose ? [pose.x, pose.y, pose.z] : []));
-    const between = new Color();
-    const colours = shown.flatMap((point, i) => (by === 'state' ? STATE_COLOURS[point.state] : between.lerpColors(OLD, NEW, i / (shown.length - 1))).toArray());
-    for (const line of this.lines) {
-      line.geometry.dispose();
-      line.geometry = new LineGeometry();
-      line.geometry.setPositions(positions);
-      line.geometry.setColors(colours);
-    }
-    this.points = points;
-    this.updateDots();
+    this.path = path;
+    this.uniforms.uByState.value = by === 'state';
+    this.uniforms.uSeconds.value = Math.max(1e-3, path?.seconds(path.length - 1) ?? 0);
+    this.choose();
     this.cost = performance.now() - start;
     this.drawnAt = start;
   }
@@ -64,34 +97,38 @@ export class PathLine {
     return this.drawnAt + 10 * this.cost;
   }
 
-  /** `scale`: CSS pixels per metre. Dots of mapped views keep their distance, so that the line stays readable. */
+  /** `scale`: CSS pixels per metre. Corners and the dots of mapped views keep their distance on the screen. */
   setScale(scale: number): void {
-    const spacing = 2 ** Math.ceil(Math.log2(DOTS_APART_PX / scale));
-    if (spacing === this.spacing) return;
-    this.spacing = spacing;
-    this.updateDots();
+    const octave = 2 ** Math.floor(Math.log2(scale));
+    if (octave === this.scale) return;
+    this.scale = octave;
+    this.choose();
   }
 
-  /** Line width needs to know the screen; `solid` puts the path at its true height among things. */
+  /** Line width needs to know the screen. */
   resize(width: number, height: number): void {
-    this.casing.resolution.set(width, height);
-    this.ink.resolution.set(width, height);
+    this.uniforms.uScreen.value.set(width, height);
   }
 
-  setCasing(colour: string): void {
-    this.casing.color.set(colour);
+  private line(half: number, casing: readonly number[]): Line {
+    const uniforms = { ...this.uniforms, uHalf: { value: half }, uCasing: { value: casing } };
+    return new Mesh(unitQuad(), new ShaderMaterial({ glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, transparent: true, depthTest: false, depthWrite: false }));
   }
 
-  private updateDots(): void {
-    const positions: number[] = [];
-    let last: { x: number; y: number } | undefined;
-    for (const { mapped, pose } of this.points) {
-      if (!mapped || !pose || (last && Math.hypot(pose.x - last.x, pose.y - last.y) < this.spacing)) continue;
-      positions.push(pose.x, pose.y, pose.z);
-      last = pose;
+  private choose(): void {
+    const corners = this.path && this.scale > 0 ? drawnPath(this.path, CORNERS_APART_PX / this.scale) : new Float32Array(0);
+    this.group.visible = corners.length > CORNER;
+    if (!this.group.visible || !this.path) return;
+    const buffer = new InstancedInterleavedBuffer(corners, CORNER);
+    for (const { geometry } of this.lines) {
+      geometry.dispose();
+      geometry.setAttribute('start', new InterleavedBufferAttribute(buffer, 4, 0));
+      geometry.setAttribute('state', new InterleavedBufferAttribute(buffer, 1, 4));
+      geometry.setAttribute('end', new InterleavedBufferAttribute(buffer, 4, CORNER));
+      geometry.instanceCount = corners.length / CORNER - 1;
     }
     this.dots.geometry.dispose();
     this.dots.geometry = new BufferGeometry();
-    this.dots.geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3));
+    this.dots.geometry.setAttribute('position', new BufferAttribute(drawnViews(this.path, Math.max(DOT_M, DOTS_APART_PX / this.scale)), 3));
   }
 }

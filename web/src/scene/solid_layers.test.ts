@@ -15,15 +15,16 @@ describe('boxes of the solid view', () => {
   const tile = { level: 1, x: -1, y: 2, rev: 1n, planes };
 
   it('stand where cells are occupied, as large as cells of their level', () => {
-    const boxes = occupiedBoxes(tile, info, DEFAULTS);
-    expect(boxes.length).toBe(8);
+    const quarters = occupiedBoxes(tile, info, DEFAULTS);
+    expect(quarters.map(({ length }) => length)).toEqual([8, 0, 0, 0]);
+    const boxes = quarters[0] ?? [];
     expect(boxes[0]).toBeCloseTo(-2.56 + 3 * 0.04, 6);
     expect(boxes[1]).toBeCloseTo(5.12 + 2 * 0.04, 6);
     expect(boxes[2]).toBeCloseTo(0.04, 6);
     expect([Math.floor(boxes[3] ?? -1), Math.floor(boxes[7] ?? -1)]).toEqual([0, 1]);
   });
   it('are gone with a hidden layer', () => {
-    expect(occupiedBoxes(tile, info, { ...DEFAULTS, ...withLayer(DEFAULTS, 0, { visible: false }) }).length).toBe(4);
+    expect(occupiedBoxes(tile, info, { ...DEFAULTS, ...withLayer(DEFAULTS, 0, { visible: false }) })[0]?.length).toBe(4);
   });
   it('move apart with their layers', () => {
     expect(layerHeights(info, 0.5)).toEqual([{ bottom: 0, top: 1 }, { bottom: 1.5, top: 2.5 }]);

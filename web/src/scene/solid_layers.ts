@@ -4,7 +4,8 @@ import { BoxGeometry, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, 
 import type { MapInfo } from '../gen/flogmap/v1/map_pb';
 import { classify, seenFromConfidence, styleValue } from '../rules';
 import { layerSetting, type Settings } from '../settings';
-import { BYTES_PER_LAYER, keyText, TILE_SIDE, tileSide, type Tile } from '../tile_store';
+import { BYTES_PER_LAYER, keyText, TILE_SIDE, tileSide, type Tile, type TileKey } from '../tile_store';
+import { quarterOf, quartersToDraw } from '../tile_choice';
 import { MAX_LAYERS, type MapUniforms } from './map_material';
 
 const VERTEX = /* glsl */ `
@@ -50,7 +51,7 @@ const choiceOf = ({ style, operators, threshold, layers }: Settings): string => 
 
 export class SolidLayers {
   readonly mesh: Mesh<InstancedBufferGeometry, ShaderMaterial>;
-  private readonly kept = new Map<string, { readonly rev: bigint; readonly choice: string; readonly boxes: Float32Array }>();
+  private readonly kept = new Map<string, { readonly rev: bigint; readonly choice: string; readonly quarters: readonly Float32Array[] }>();
   private choice = '';
 
   constructor(uniforms: MapUniforms) {
@@ -65,19 +66,24 @@ export class SolidLayers {
   }
 
   /** False if there was no time for the boxes of all tiles: some are as they were, or still missing. */
-  show(tiles: readonly Tile[], info: MapInfo, settings: Settings): boolean {
+  show(tiles: readonly Tile[], level: number, info: MapInfo, settings: Settings): boolean {
     this.choice = choiceOf(settings);
     const until = performance.now() + BUILD_MS;
     const due = tiles.filter((tile) => !this.isCurrent(tile)).sort((a, b) => this.builtRev(a) - this.builtRev(b));
     let built = 0;
     while (built < due.length && (built === 0 || performance.now() < until)) this.build(due[built++] as Tile, info, settings);
-    this.fill(tiles.map((tile) => this.kept.get(keyText(tile))?.boxes ?? NO_BOXES));
+    this.fill(tiles.flatMap((tile) => quartersToDraw(tile, level, (key) => this.has(key)).map((quarter) => this.kept.get(keyText(tile))?.quarters[quarter] ?? NO_BOXES)));
     const { uBottoms, uTops, uClip } = this.mesh.material.uniforms;
     const heights = layerHeights(info, settings.spread);
     if (uBottoms) uBottoms.value = pad(heights.map(({ bottom }) => bottom));
     if (uTops) uTops.value = pad(heights.map(({ top }) => top));
     if (uClip) uClip.value = settings.clipHeight;
     return built === due.length;
+  }
+
+  /** Its boxes are there, if perhaps not the newest. */
+  has(key: TileKey): boolean {
+    return this.kept.has(keyText(key));
   }
 
   /** Another map begins. */
@@ -98,7 +104,7 @@ export class SolidLayers {
   private build(tile: Tile, info: MapInfo, settings: Settings): void {
     const key = keyText(tile);
     this.kept.delete(key); // to the end: the longest unchanged goes first
-    this.kept.set(key, { rev: tile.rev, choice: this.choice, boxes: occupiedBoxes(tile, info, settings) });
+    this.kept.set(key, { rev: tile.rev, choice: this.choice, quarters: occupiedBoxes(tile, info, settings) });
     if (this.kept.size > MAX_KEPT) this.kept.delete(this.kept.keys().next().value ?? '');
   }
 
@@ -130,23 +136,25 @@ export function layerHeights(info: MapInfo, spread: number): { bottom: number; t
   return info.layers.map((layer, i) => ({ bottom: layer.zMin + i * spread, top: layer.zMax + i * spread }));
 }
 
-/** Corner x, y, side and layer + value / 2 of every box of a tile; value below 1 so that the layer survives. */
-export function occupiedBoxes(tile: Tile, info: MapInfo, settings: Settings): Float32Array {
+/** Of the boxes of each quarter of a tile (quarterOf): corner x, y, side and layer + value / 2; value below 1 so that the layer survives. */
+export function occupiedBoxes(tile: Tile, info: MapInfo, settings: Settings): Float32Array[] {
   const side = tileSide(tile.level, info.cellSize);
   const cell = side / TILE_SIDE;
-  const boxes: number[] = [];
+  const quarters: number[][] = [[], [], [], []];
   info.layers.slice(0, MAX_LAYERS).forEach((layer, index) => {
     if (!layerSetting(settings, layer.id).visible) return;
     const seenFrom = seenFromConfidence(info.minRays, layer.fullConfidenceRays);
     for (let column = 0; column < TILE_SIDE * TILE_SIDE; ++column) {
       const at = index * BYTES_PER_LAYER + 4 * column;
+      if (tile.planes[at + 2] === 0) continue; // nobody looked
       const evidence = { E: byte(tile, at), O: byte(tile, at + 1), K: byte(tile, at + 2), C: byte(tile, at + 3) };
-      if (evidence.K === 0 || classify(settings.style, settings.operators, evidence, seenFrom, settings.threshold) !== 'occupied') continue;
+      if (classify(settings.style, settings.operators, evidence, seenFrom, settings.threshold) !== 'occupied') continue;
       const value = Math.min(0.998, styleValue(settings.style, settings.operators, evidence));
-      boxes.push(tile.x * side + (column % TILE_SIDE) * cell, tile.y * side + Math.floor(column / TILE_SIDE) * cell, cell, index + value / 2);
+      const [x, y] = [column % TILE_SIDE, Math.floor(column / TILE_SIDE)];
+      quarters[quarterOf(x, y)]?.push(tile.x * side + x * cell, tile.y * side + y * cell, cell, index + value / 2);
     }
   });
-  return new Float32Array(boxes);
+  return quarters.map((boxes) => new Float32Array(boxes));
 }
 
 const byte = (tile: Tile, at: number): number => (tile.planes[at] ?? 0) / 255;

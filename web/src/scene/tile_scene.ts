@@ -1,12 +1,14 @@
 // Everything in the scene that is made of tiles: their textures, the flat picture, floors of spread layers, boxes.
 
-import { Group, type WebGLRenderer } from 'three';
+import { Group } from 'three';
 import type { MapInfo } from '../gen/flogmap/v1/map_pb';
 import type { LiveMap } from '../live_map';
 import type { Settings } from '../settings';
-import { keyText, tilesToDraw, withoutStandIns, type Tile, type TileKey } from '../tile_store';
+import { tilesToDraw } from '../tile_choice';
+import { keyText, type Tile, type TileKey } from '../tile_store';
 import { levelFor, visibleRect, type Rect, type Viewport } from '../viewport';
 import type { MapUniforms, TileRules } from './map_material';
+import type { Picture } from './picture';
 import { layerHeights, SolidLayers } from './solid_layers';
 import { TileMeshes } from './tile_meshes';
 import { TilePages } from './tile_pages';
@@ -25,7 +27,7 @@ export class TileScene {
   private readonly dirty = new Map<string, Tile>();
   private later: Map<string, Tile> | null = null; // what changed while the picture is held; null: it is not
 
-  constructor(private readonly renderer: WebGLRenderer, private readonly live: LiveMap, private readonly uniforms: MapUniforms, private rules: TileRules) {
+  constructor(private readonly picture: Picture, private readonly live: LiveMap, private readonly uniforms: MapUniforms, private rules: TileRules) {
     this.solid = new SolidLayers(uniforms);
     this.group.add(this.solid.mesh);
   }
@@ -38,7 +40,7 @@ export class TileScene {
     }
     this.pages?.dispose();
     const layers = this.live.info?.layers ?? [];
-    const pages = new TilePages(this.renderer, Math.max(1, layers.length));
+    const pages = new TilePages(this.picture.renderer, Math.max(1, layers.length));
     this.pages = pages;
     this.flat = new TileMeshes(pages, this.uniforms, this.rules);
     this.floors = layers.map((_, layer) => new TileMeshes(pages, this.uniforms, this.rules, layer));
@@ -104,15 +106,16 @@ export class TileScene {
 
   /** Chooses what is to be seen from where one looks. False if it could not yet bring all of it to the graphics card. */
   show(view: Viewport, info: MapInfo, settings: Settings, floor = settings.solid ? (info.layers[0]?.zMin ?? 0) : 0): boolean {
-    const level = levelFor(view, info.cellSize, info.levels, this.renderer.getPixelRatio());
+    const level = levelFor(view, info.cellSize, info.levels, this.picture.fullRatio);
     const rect = visibleRect(view);
     const more = settings.solid ? Math.max(rect.xMax - rect.xMin, rect.yMax - rect.yMin) : 0; // a slanted eye sees further
-    this.shown = tilesToDraw(this.live.tiles, grown(rect, more), level, info.cellSize);
+    const seen = grown(rect, more);
+    this.shown = tilesToDraw(this.live.tiles, seen, level, info.cellSize, (key) => this.pages?.slotOf(key) !== undefined);
     const brought = this.upload();
     this.flat?.show(this.shown, info.cellSize);
     this.flat?.setHeight(floor);
     this.showFloors(info, settings);
-    const built = !settings.solid || this.solid.show(withoutStandIns(this.live.tiles, this.shown, level), info, settings);
+    const built = !settings.solid || this.solid.show(tilesToDraw(this.live.tiles, seen, level, info.cellSize, (key) => this.solid.has(key)), level, info, settings);
     if (!settings.solid) this.solid.mesh.visible = false;
     return brought && built;
   }

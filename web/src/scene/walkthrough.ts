@@ -52,7 +52,7 @@ export class Walkthrough {
       fetch: (number) => backend.viewMesh(number), make: drawableOf, dispose: (drawable) => drawable.dispose(), changed: () => this.refresh(),
     }, budgetBytes);
     live.begun.on(() => this.begin());
-    live.trajectoryChanged.on(() => { if (this.active) this.ride.times = rideTimes(live.trajectory); });
+    live.trajectoryChanged.on(() => { if (this.active) this.ride.times = rideTimes(live.path); });
   }
 
   get state(): WalkState {
@@ -70,8 +70,8 @@ export class Walkthrough {
   /** Steps into the map where the camera is now; rejects where there are no views. */
   async enter(): Promise<void> {
     await this.ask();
-    this.ride.times = rideTimes(this.live.trajectory);
-    const pose = this.live.pose?.pose ?? this.live.trajectory.at(-1)?.pose;
+    this.ride.times = rideTimes(this.live.path);
+    const pose = this.live.pose?.pose ?? this.live.path.at(-1)?.pose;
     if (pose) this.walker = standingAt(pose);
     else if (this.list?.views[0]) this.standAtView(this.list.views[0]);
     this.active = true;
@@ -89,7 +89,7 @@ export class Walkthrough {
   rideTo(seconds: number, on = this.ride.on): void {
     const end = this.ride.times.at(-1) ?? 0;
     this.ride = { ...this.ride, on, seconds: Math.min(end, Math.max(0, seconds)) };
-    this.walker = rideAt(this.live.trajectory, this.ride.times, this.ride.seconds) ?? this.walker;
+    this.walker = rideAt(this.live.path, this.ride.times, this.ride.seconds) ?? this.walker;
     this.refresh();
   }
 
@@ -118,7 +118,7 @@ export class Walkthrough {
   private advanceRide(seconds: number): void {
     const end = this.ride.times.at(-1) ?? 0;
     this.ride.seconds = Math.min(end, this.ride.seconds + seconds);
-    this.walker = rideAt(this.live.trajectory, this.ride.times, this.ride.seconds) ?? this.walker;
+    this.walker = rideAt(this.live.path, this.ride.times, this.ride.seconds) ?? this.walker;
     if (this.ride.seconds >= end) this.ride.on = false;
     this.changed.emit();
   }

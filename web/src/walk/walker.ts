@@ -2,6 +2,7 @@
 
 import { rotate, type Vector } from '../geometry';
 import type { PoseValue } from '../gen/flogmap/v1/map_pb';
+import type { PathPoints } from '../path';
 import { wrapAngle } from '../viewport';
 import type { Eye } from './view_choice';
 
@@ -69,26 +70,23 @@ export function eyeOf({ position, yaw, pitch }: Walker): Eye {
   return { position, forward: [Math.cos(yaw) * c, Math.sin(yaw) * c, Math.sin(pitch)], right: [Math.sin(yaw), -Math.cos(yaw), 0] };
 }
 
-interface Timed {
-  readonly timeNs: bigint;
-  readonly pose?: PoseValue | undefined;
-}
-
 /** Seconds from the first to the last pose of a path; pauses longer than `LONGEST_GAP_S` count as that. */
 const LONGEST_GAP_S = 1;
 
-export function rideTimes(path: readonly Timed[]): number[] {
+export function rideTimes(path: PathPoints): number[] {
   const times: number[] = [];
-  path.forEach(({ timeNs }, i) => {
-    const before = path[i - 1];
-    const gap = before ? Number(timeNs - before.timeNs) / 1e9 : 0;
+  let before: bigint | undefined;
+  for (let i = 0; i < path.length; ++i) {
+    const timeNs = path.at(i)?.timeNs ?? 0n;
+    const gap = before === undefined ? 0 : Number(timeNs - before) / 1e9;
     times.push((times[i - 1] ?? 0) + Math.min(LONGEST_GAP_S, Math.max(0, gap)));
-  });
+    before = timeNs;
+  }
   return times;
 }
 
 /** Where the camera was, `seconds` after the start of the ride; between poses on the straight way. */
-export function rideAt(path: readonly Timed[], times: readonly number[], seconds: number): Walker | undefined {
+export function rideAt(path: PathPoints, times: readonly number[], seconds: number): Walker | undefined {
   let low = 0;
   let high = times.length - 1;
   while (high - low > 1) {
@@ -96,8 +94,8 @@ export function rideAt(path: readonly Timed[], times: readonly number[], seconds
     if ((times[middle] ?? 0) <= seconds) low = middle;
     else high = middle;
   }
-  const a = path[low]?.pose;
-  const b = path[high]?.pose;
+  const a = path.at(low)?.pose;
+  const b = path.at(high)?.pose;
   if (!a || !b) return a ? standingAt(a) : undefined;
   const span = (times[high] ?? 0) - (times[low] ?? 0);
   const t = span > 0 ? Math.min(1, Math.max(0, (seconds - (times[low] ?? 0)) / span)) : 0;
