@@ -15,9 +15,19 @@ describe('sharpness', () => {
     sharpness.took(100, 1);
     sharpness.moved(1000);
     expect(sharpness.ratio(1010)).toBe(0.5);
+    sharpness.took(30, 0.5);
     expect(sharpness.sharpIn(1010)).toBe(170);
     expect(sharpness.ratio(1180)).toBe(1);
     expect(sharpness.sharpIn(1180)).toBeUndefined();
+  });
+
+  it('waits longer for the next movement where pictures take longer than that', () => {
+    const sharpness = new Sharpness(1);
+    sharpness.took(100, 1);
+    sharpness.moved(0);
+    sharpness.took(300, 0.5);
+    expect(sharpness.ratio(700)).toBe(0.5);
+    expect(sharpness.ratio(900)).toBe(1);
   });
 
   it('goes down no further than the time asks for', () => {

@@ -2,13 +2,15 @@
 // is slow at drawing; all of them again as soon as it rests. Pure.
 
 const AIM_MS = 25; // for a picture while it moves
-const REST_MS = 180; // without a movement, until it is sharp again
+const REST_MS = 180; // without a movement, until it is sharp again; longer where pictures take long:
+const REST_PICTURES = 3; // of the last one's time, since movements come no more often than pictures
 const LEAST = 0.5; // per CSS pixel
 const LEARNS = 0.4; // of a new picture's time
 
 export class Sharpness {
   private movedAt = -Infinity;
   private sharpMs = 0; // for a sharp picture, lately
+  private restMs = REST_MS;
   private coarse = 0; // pixels per CSS pixel of this movement; 0: as sharp as it can be
 
   /** `full`: pixels per CSS pixel of the screen. */
@@ -24,7 +26,7 @@ export class Sharpness {
   }
 
   isMoving(now: number): boolean {
-    return now - this.movedAt < REST_MS;
+    return now - this.movedAt < this.restMs;
   }
 
   ratio(now: number): number {
@@ -33,11 +35,12 @@ export class Sharpness {
 
   /** Milliseconds until it is to be drawn sharp; nothing if it is. */
   sharpIn(now: number): number | undefined {
-    return this.ratio(now) < this.full ? this.movedAt + REST_MS - now : undefined;
+    return this.ratio(now) < this.full ? this.movedAt + this.restMs - now : undefined;
   }
 
   /** A picture with `ratio` pixels per CSS pixel took so long. */
   took(ms: number, ratio: number): void {
+    this.restMs = Math.max(REST_MS, REST_PICTURES * ms);
     if (ratio < this.full) return;
     this.sharpMs = this.sharpMs > 0 ? this.sharpMs + LEARNS * (ms - this.sharpMs) : ms;
   }
