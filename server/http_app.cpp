@@ -102,7 +102,7 @@ std::optional<ApiResponse> HttpApp::refuse_stream(const ApiRequest& request) {
 
 void HttpApp::answer(ApiRequest& request, Done done) {
   identify(request);
-  ApiAnswer answer = problem(500, "internal", "a fault of the server");
+  ApiAnswer answer;
   try {
     answer = dispatch(request);
   } catch (const RefusedRequest& refused) {
@@ -168,7 +168,7 @@ void HttpApp::run(const std::string& path, ApiJob job, Done done) {
   auto owner = std::make_shared<Done>(std::move(done));
   auto work = [this, path, job = std::move(job), owner] {
     const auto start = steady_clock::now();
-    ApiResponse response = problem(500, "internal", "a fault of the server");
+    ApiResponse response;
     try {
       response = job();
     } catch (const RefusedRequest& refused) {
