@@ -125,7 +125,8 @@ HandLevel CaptureControl::level_of_next_map() {
 }
 
 bool CaptureControl::has_work() const {
-  return stop_ || relevel_ || reset_ || seek_s_ || state_ == SessionState::running || steps_ > 0;
+  const bool reads = !ended_generation_ && (state_ == SessionState::running || steps_ > 0);
+  return stop_ || relevel_ || reset_ || seek_s_ || reads;
 }
 
 CaptureTurn CaptureControl::await_turn() {
@@ -135,6 +136,7 @@ CaptureTurn CaptureControl::await_turn() {
   if (reset_ || seek_s_) {
     anchor_.reset();
     hurry_until_ns_ = 0;
+    ended_generation_.reset();
     if (state_ == SessionState::finished) state_ = SessionState::running;
     if (reset_) {
       reset_ = false;
@@ -184,10 +186,16 @@ void CaptureControl::hurry_until(std::int64_t timestamp_ns) {
   hurry_until_ns_ = timestamp_ns;
 }
 
-void CaptureControl::finished() {
+void CaptureControl::source_ended(std::uint64_t generation) {
   const std::scoped_lock lock(mutex_);
-  if (state_ == SessionState::running || state_ == SessionState::paused) state_ = SessionState::finished;
+  ended_generation_ = generation;
   steps_ = 0;
+}
+
+void CaptureControl::finished(std::uint64_t generation) {
+  const std::scoped_lock lock(mutex_);
+  if (ended_generation_ != generation) return;
+  if (state_ == SessionState::running || state_ == SessionState::paused) state_ = SessionState::finished;
 }
 
 void CaptureControl::started() {

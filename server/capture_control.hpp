@@ -49,7 +49,8 @@ class CaptureControl final : public SessionControl {
   /// Waits until the frame is due; cut short by a command, a pause or the end.
   void await_due(std::int64_t timestamp_ns);
   void frame_delivered(std::int64_t timestamp_ns);
-  void finished();
+  /// The source has no more frames of this generation; the session goes on until they are all mapped.
+  void source_ended(std::uint64_t generation);
   /// Frames before this time are not paced: a seek forwards plays fast instead of leaving a gap in the map.
   void hurry_until(std::int64_t timestamp_ns);
   [[nodiscard]] bool loop() const { return loop_; }
@@ -59,6 +60,8 @@ class CaptureControl final : public SessionControl {
 
   // the pipeline
   void started();
+  /// All of this generation is mapped; nothing if another one has begun meanwhile.
+  void finished(std::uint64_t generation);
   void failed(const std::string& reason);
   void drain();
 
@@ -77,6 +80,7 @@ class CaptureControl final : public SessionControl {
   bool stop_ = false;
   bool reset_ = false;
   std::optional<double> seek_s_;
+  std::optional<std::uint64_t> ended_generation_;  // that nothing can be read of any more
   int steps_ = 0;
   HandLevel level_;
   bool relevel_ = false;

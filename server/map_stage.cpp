@@ -38,8 +38,16 @@ void MapStage::correct(PathCorrection correction, std::uint64_t number) {
 void MapStage::begin(MapBegin map) {
   Item item;
   item.begin = std::move(map);
-  item.begun = std::make_shared<std::promise<void>>();
-  std::future<void> done = item.begun->get_future();
+  item.reached = std::make_shared<std::promise<void>>();
+  std::future<void> done = item.reached->get_future();
+  if (items_.push(std::move(item))) done.get();
+}
+
+void MapStage::wait_for_rest() {
+  Item item;
+  item.rest = true;
+  item.reached = std::make_shared<std::promise<void>>();
+  std::future<void> done = item.reached->get_future();
   if (items_.push(std::move(item))) done.get();
 }
 
@@ -61,15 +69,17 @@ std::optional<MapStage::Item> MapStage::next() {
 void MapStage::take_in(Item& item) {
   if (item.begin) {
     begin_now(*item.begin);
-    item.begun->set_value();
   } else if (item.correction) {
     builder_.correct(*std::move(item.correction));
     newest_number_ = item.number;
+  } else if (item.rest) {
+    while (builder_.is_behind() && !batch_ && !ending_()) catch_up();
   } else {
     take_in(*item.view);
   }
   num_waiting_ = builder_.num_waiting();
   whole_ = builder_.is_whole();
+  if (item.reached) item.reached->set_value();
 }
 
 void MapStage::take_in(View& view) {

@@ -33,6 +33,9 @@ class MapStage {
   /// in.
   void begin(MapBegin map);
 
+  /// Returns when everything so far is in the map, corrections as well; those not in batch or while ending.
+  void wait_for_rest();
+
   void run();
   void close() { items_.close(); }
   void abandon() { items_.abandon(); }
@@ -51,9 +54,10 @@ class MapStage {
   struct Item {
     std::optional<View> view;  // as odometry has it; or ...
     std::optional<PathCorrection> correction;
-    std::uint64_t number = 0;       // of the correction
-    std::optional<MapBegin> begin;  // ... begin this map, then open `begun`
-    std::shared_ptr<std::promise<void>> begun;
+    std::uint64_t number = 0;                     // of the correction
+    std::optional<MapBegin> begin;                // ... begin this map; or ...
+    bool rest = false;                            // ... catch up; then ...
+    std::shared_ptr<std::promise<void>> reached;  // ... of the last two: open this
   };
 
   std::optional<Item> next();

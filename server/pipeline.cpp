@@ -73,12 +73,7 @@ void Pipeline::run_stage(Stage stage) {
 void Pipeline::see() {
   while (std::optional<Captured> captured = frames_.pop()) {
     if (captured->generation.number != seen_generation_) begin_generation(captured->generation);
-    if (captured->ended) {
-      FrontEndResult rest = front_end_.finish();
-      pass_on(rest);
-      wait_for_loops();
-      report_status();  // nothing may follow, and the last counts must not stay behind
-    }
+    if (captured->ended) finish(captured->generation);
     if (captured->trouble) report_status();
     if (captured->level) level_map(*captured->level);
     if (!captured->frame) continue;
@@ -92,6 +87,16 @@ void Pipeline::see() {
   report_status();
   if (loops_) loops_->close();
   map_.close();
+}
+
+/// Nothing may follow: whoever reads that the session has finished finds all of its map and the last counts.
+void Pipeline::finish(const Generation& generation) {
+  FrontEndResult rest = front_end_.finish();
+  pass_on(rest);
+  wait_for_loops();
+  map_.wait_for_rest();
+  report_status();
+  control_.finished(generation.number);
 }
 
 /// Poses to the observer, views to the map and to where loops are found.

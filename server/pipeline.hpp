@@ -68,6 +68,7 @@ class Pipeline {
   void go_to(double position_s);
   void at_end();
   void see();
+  void finish(const Generation& generation);
   void begin_generation(const Generation& generation);
   void pass_on(FrontEndResult& result);
   void put_into_map(std::int64_t timestamp_ns, FrontEndResult& result) const;

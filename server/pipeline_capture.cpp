@@ -75,12 +75,10 @@ void Pipeline::note_losses() {
 }
 
 void Pipeline::at_end() {
+  const bool again = control_.loop() && control_.state() != SessionState::draining;
+  if (!again) control_.source_ended(generation_.number);
   frames_.push({.generation = generation_, .frame = {}, .ended = true, .at = Clock::now()});
-  if (control_.loop() && control_.state() != SessionState::draining) {
-    restart("the recording starts again", 0);
-  } else {
-    control_.finished();
-  }
+  if (again) restart("the recording starts again", 0);
 }
 
 /// Another map from this position of the recording; a live source goes on where it is.

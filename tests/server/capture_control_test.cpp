@@ -45,7 +45,8 @@ TEST(CaptureControl, EveryIllegalTransitionIsRefusedWithAReason) {
   EXPECT_EQ(again.outcome, ControlOutcome::illegal);
   EXPECT_FALSE(again.detail.empty());
   EXPECT_EQ(control.resume().outcome, ControlOutcome::done);
-  control.finished();
+  control.source_ended(1);
+  control.finished(1);
   EXPECT_EQ(control.pause().outcome, ControlOutcome::illegal);
   EXPECT_EQ(control.resume().outcome, ControlOutcome::illegal);
 }
@@ -109,10 +110,27 @@ TEST(CaptureControl, ASeekComesFirstAndShowsOneFrameWhilePaused) {
   EXPECT_EQ(control.state(), SessionState::paused);
 }
 
+TEST(CaptureControl, ARecordingHasFinishedWhenItsLastFrameIsMappedNotWhenItIsRead) {
+  CaptureControl control = running(recording());
+  control.started();
+  control.source_ended(1);
+  EXPECT_EQ(control.state(), SessionState::running);
+  ASSERT_EQ(control.reset().outcome, ControlOutcome::done);
+  EXPECT_EQ(control.await_turn().kind, CaptureTurn::Kind::reset);
+  control.finished(1);  // of the map before
+  EXPECT_EQ(control.state(), SessionState::running);
+  control.source_ended(2);
+  control.finished(1);
+  EXPECT_EQ(control.state(), SessionState::running);
+  control.finished(2);
+  EXPECT_EQ(control.state(), SessionState::finished);
+}
+
 TEST(CaptureControl, AResetAfterTheEndRunsAgain) {
   CaptureControl control = running(recording());
   control.started();
-  control.finished();
+  control.source_ended(1);
+  control.finished(1);
   EXPECT_EQ(control.state(), SessionState::finished);
   EXPECT_EQ(control.reset().outcome, ControlOutcome::done);
   EXPECT_EQ(control.await_turn().kind, CaptureTurn::Kind::reset);

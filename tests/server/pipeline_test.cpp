@@ -161,6 +161,25 @@ TEST(Pipeline, AResetBeginsAnotherEpochBeforeAnythingOfItIsTold) {
   EXPECT_EQ(witness.poses_since_begin, static_cast<std::size_t>(kFrames));
 }
 
+TEST(Pipeline, AFinishedSessionHasAllOfItsMap) {
+  Witness all;
+  const auto batch = make_pipeline(all, true);
+  batch->start();
+  batch->wait();
+  Witness witness;
+  const auto pipeline = make_pipeline(witness, false);
+  pipeline->start();
+  while (pipeline->control().state() != SessionState::finished) std::this_thread::yield();
+  {
+    const std::scoped_lock lock(witness.mutex);
+    EXPECT_EQ(witness.frames, kFrames);
+    EXPECT_EQ(witness.status.frames, static_cast<std::uint64_t>(kFrames));
+    EXPECT_EQ(witness.tiles_since_begin, all.tiles_since_begin);
+  }
+  pipeline->stop();
+  pipeline->wait();
+}
+
 TEST(Pipeline, WhatAStageThrowsComesOutOfWait) {
   Witness witness;
   const auto pipeline = make_pipeline(witness, true, 3);
