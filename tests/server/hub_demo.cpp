@@ -1,6 +1,6 @@
 // hub_demo PORT SECONDS [WEB_ROOT [HOUSES | CERT KEY]]: a synthetic map, growing, through the real Hub; of
-// one house, or of HOUSES alike, each of about 60 tiles: in the first round all of them grow at once, then the
-// camera walks a round in one after the other. See README.md.
+// one house, or of HOUSES alike, each of about 60 tiles: in the first round all of them grow at once, then
+// the camera walks a round in one after the other. See README.md.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
