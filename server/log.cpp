@@ -82,7 +82,11 @@ LogScope::LogScope(const LogOptions& options) : parts_(std::make_unique<Parts>()
   listening = &writer;
 }
 
-LogScope::~LogScope() { listening = nullptr; }
+/// The writing thread ends first, with all that waits written; what it writes with goes after it.
+LogScope::~LogScope() {
+  listening = nullptr;
+  parts_->writer.pool.reset();
+}
 
 bool log_wants(LogLevel level) {
   const Writer* writer = listening;
