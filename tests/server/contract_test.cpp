@@ -39,7 +39,10 @@ class Contract : public ::testing::Test {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     ask("POST", "/api/v1/session:pause");
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // what is under way arrives
+    for (json before; before != progress();) {  // what is under way arrives
+      before = progress();
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
   }
   static void TearDownTestSuite() { program_.reset(); }
 
@@ -49,6 +52,10 @@ class Contract : public ::testing::Test {
     return http(program_->port(), method, target, headers, body);
   }
 
+  static json progress() {
+    const json session = json::parse(ask("GET", "/api/v1/session").body);
+    return {session["rev"], session["frames"]};
+  }
   static std::string a_tile() {
     const json changes = json::parse(ask("GET", "/api/v1/maps/live/changes").body);
     for (const auto& tile : changes["tiles"]) {
