@@ -43,6 +43,7 @@ export function inspectorPanel(page: Page): HTMLElement {
     if (cell) page.connection.inspect(cell.x, cell.y);
   };
   page.focus.watch(['cell'], ask);
+  page.focus.watch(['cell'], ({ cell }) => { if (cell) element.scrollIntoView({ block: 'nearest' }); });
   setInterval(ask, ASK_EVERY_MS);
   return element;
 }

@@ -111,7 +111,8 @@ function dot(page: Page, drawing: SVGElement, point: Point, kind: string): void 
 /** Length of the line, last leg, and area from three points on; each end may be half a cell off. */
 export function measureWords(measured: readonly Point[], hover: Point | undefined, cellSize: number): string {
   if (measured.length === 0) return 'Measure: click the first point. Backspace takes a point back, Esc ends.';
-  const points = hover ? [...measured, hover] : measured;
+  const rests = hover && measured.at(-1)?.x === hover.x && measured.at(-1)?.y === hover.y; // on the point just clicked
+  const points = hover && !rests ? [...measured, hover] : measured;
   const error = (cellSize / Math.SQRT2) * Math.max(1, points.length - 1);
   const length = `${lengthOf(points).toFixed(2)} m ± ${error.toFixed(2)}`;
   const leg = points.length > 2 ? `, last leg ${lengthOf(points.slice(-2)).toFixed(2)} m` : '';

@@ -10,11 +10,12 @@ const GIVE_UP_MS = 2000; // a card that never answers is not waited for
 export class FramePacer {
   /** How long pictures had to wait for their turn lately, ms: how far behind the graphics card is. */
   lateMs = 0;
+  /** From the start of the last picture until the card was done with it. */
+  tookMs = 0;
   /** Someone moves the picture: no rests. */
   hurry = false;
   private scheduled = false;
   private drawing: { readonly fence: WebGLSync; readonly since: number } | null = null;
-  private tookMs = 0; // from the start of the last picture until the card was done
 
   constructor(private readonly gl: WebGL2RenderingContext, private readonly draw: (now: number) => void, private readonly done: (tookMs: number) => void) {}
 

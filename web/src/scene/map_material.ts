@@ -164,14 +164,16 @@ void main() {
 `;
 
 const VERTEX = /* glsl */ `
-in vec4 tile;  // lower left corner x, y; side [m]; slot
+in vec4 tile;  // lower left corner x, y; side [m]; slot, + (1 + quarter) / 8 if only this quarter is to be seen
 uniform float uHeight;
 out vec2 vCell;
 flat out float vSlot;
 void main() {  // coarser tiles lie a little lower, so that finer ones cover them
-  vCell = position.xy * 64.0;
-  vSlot = tile.w;
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(tile.xy + position.xy * tile.z, uHeight - 1e-4 * tile.z, 1.0);
+  int quarter = int(fract(tile.w) * 8.0 + 0.5) - 1;
+  vec2 part = quarter < 0 ? position.xy : 0.5 * (position.xy + vec2(quarter & 1, quarter >> 1));
+  vCell = part * 64.0;
+  vSlot = floor(tile.w);
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(tile.xy + part * tile.z, uHeight - 1e-4 * tile.z, 1.0);
 }
 `;
 

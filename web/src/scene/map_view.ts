@@ -209,7 +209,7 @@ export class MapView {
 
   private follow(): void {
     const { follow } = this.settings.get();
-    const pose = this.live.pose?.pose;
+    const pose = this.live.lastPose?.pose;
     if (follow === 'free' || !pose || this.held) return;
     const turn = follow === 'heading' ? wrapAngle(heading(pose) - Math.PI / 2) : 0;
     this.glideTo({ ...this.viewport, scale: this.glide.target?.scale ?? this.viewport.scale, x: pose.x, y: pose.y, turn });
@@ -241,6 +241,7 @@ export class MapView {
     if (this.walkthrough) return this.drawWalk(this.walkthrough, seconds);
     this.refresh();
     this.eye.solid = this.settings.get().solid;
+    this.eye.aim = (this.settings.get().spread * Math.max(0, (this.live.info?.layers.length ?? 1) - 1)) / 2;
     this.eye.update(this.viewport);
     this.grid.update(this.viewport, this.eye.solid, this.eye.solid ? (this.live.info?.layers[0]?.zMin ?? 0) : 0);
     this.renderer.render(this.scene, this.eye.camera);
@@ -276,7 +277,7 @@ export class MapView {
     this.path.setScale(this.viewport.scale);
     this.stale = { tiles: !brought, path: pathLater, settings: false };
     if (pathLater) setTimeout(() => this.requestDraw(), Math.max(16, this.path.restsUntil() - performance.now()));
-    const pose = this.live.pose;
+    const pose = this.live.lastPose;
     if (pose?.pose && !this.held) {
       this.marker.setState(pose.state);
       this.marker.place(pose.pose, this.live.camera, this.viewport.scale, settings.solid);

@@ -42,7 +42,8 @@ void main() {
   colour = vec4(base * vAbout.z * mix(0.72, 1.0, vUp), 1.0);
 }`;
 
-const BUILD_MS = 12; // of a frame
+const BUILD_MS = 12; // of a picture
+const BUILD_SHARE = 0.5; // of a picture's time where that is long
 const MAX_KEPT = 4096; // tiles
 const NO_BOXES = new Float32Array(0);
 
@@ -66,9 +67,9 @@ export class SolidLayers {
   }
 
   /** False if there was no time for the boxes of all tiles: some are as they were, or still missing. */
-  show(tiles: readonly Tile[], level: number, info: MapInfo, settings: Settings): boolean {
+  show(tiles: readonly Tile[], level: number, info: MapInfo, settings: Settings, pictureMs: number): boolean {
     this.choice = choiceOf(settings);
-    const until = performance.now() + BUILD_MS;
+    const until = performance.now() + Math.max(BUILD_MS, BUILD_SHARE * pictureMs);
     const due = tiles.filter((tile) => !this.isCurrent(tile)).sort((a, b) => this.builtRev(a) - this.builtRev(b));
     let built = 0;
     while (built < due.length && (built === 0 || performance.now() < until)) this.build(due[built++] as Tile, info, settings);

@@ -1,6 +1,7 @@
 // Draws the tiles on screen: one instanced quad per tile, one draw call per page of textures.
 
 import { BufferAttribute, Group, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, type BufferGeometry, type ShaderMaterial } from 'three';
+import { quartersToDraw } from '../tile_choice';
 import { tileSide, type Tile } from '../tile_store';
 import { tileMaterial, type MapUniforms, type TileRules } from './map_material';
 import type { TilePages } from './tile_pages';
@@ -36,14 +37,17 @@ export class TileMeshes {
     }
   }
 
-  /** Takes the tiles that are to be seen, in the order of drawing. */
-  show(tiles: readonly Tile[], cellSize: number): void {
+  /** Takes the tiles that are to be seen, in the order of drawing; of those coarser than `level` what no finer one shows. */
+  show(tiles: readonly Tile[], level: number, cellSize: number): void {
     while (this.meshes.length < this.pages.pages.length) this.addMesh();
     const perPage = this.meshes.map((): number[] => []);
     for (const tile of tiles) {
       const slot = this.pages.slotOf(tile);
+      if (!slot) continue;
       const side = tileSide(tile.level, cellSize);
-      if (slot) perPage[slot.page]?.push(tile.x * side, tile.y * side, side, slot.index);
+      const quarters = quartersToDraw(tile, level, (key) => this.pages.slotOf(key) !== undefined);
+      if (quarters.length === 4) perPage[slot.page]?.push(tile.x * side, tile.y * side, side, slot.index);
+      else for (const quarter of quarters) perPage[slot.page]?.push(tile.x * side, tile.y * side, side, slot.index + (quarter + 1) / 8);
     }
     this.meshes.forEach((mesh, page) => this.fill(mesh, perPage[page] ?? []));
   }

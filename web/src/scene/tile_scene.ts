@@ -13,7 +13,8 @@ import { layerHeights, SolidLayers } from './solid_layers';
 import { TileMeshes } from './tile_meshes';
 import { TilePages } from './tile_pages';
 
-const UPLOAD_MS = 8; // of a frame
+const UPLOAD_MS = 8; // of a picture
+const UPLOAD_SHARE = 0.25; // of a picture's time where that is long: else a slow machine would never have all tiles
 const UPLOAD_BYTES = 4 * 2 ** 20; // of a frame: the card works on after the call is back
 
 export class TileScene {
@@ -87,7 +88,7 @@ export class TileScene {
   /** Brings tiles to the graphics card, and no more of them than a frame has time for: changed ones on screen, then
    *  those that the card never had. What changes out of sight waits until it is seen. False if some are left. */
   private upload(): boolean {
-    const until = performance.now() + UPLOAD_MS;
+    const until = performance.now() + Math.max(UPLOAD_MS, UPLOAD_SHARE * this.picture.pacer.tookMs);
     let bytes = 0;
     for (const [key, tile] of this.due()) {
       if (bytes > UPLOAD_BYTES || performance.now() > until) return false;
@@ -112,21 +113,21 @@ export class TileScene {
     const seen = grown(rect, more);
     this.shown = tilesToDraw(this.live.tiles, seen, level, info.cellSize, (key) => this.pages?.slotOf(key) !== undefined);
     const brought = this.upload();
-    this.flat?.show(this.shown, info.cellSize);
+    this.flat?.show(this.shown, level, info.cellSize);
     this.flat?.setHeight(floor);
-    this.showFloors(info, settings);
-    const built = !settings.solid || this.solid.show(tilesToDraw(this.live.tiles, seen, level, info.cellSize, (key) => this.solid.has(key)), level, info, settings);
+    this.showFloors(level, info, settings);
+    const built = !settings.solid || this.solid.show(tilesToDraw(this.live.tiles, seen, level, info.cellSize, (key) => this.solid.has(key)), level, info, settings, this.picture.pacer.tookMs);
     if (!settings.solid) this.solid.mesh.visible = false;
     return brought && built;
   }
 
-  private showFloors(info: MapInfo, settings: Settings): void {
+  private showFloors(level: number, info: MapInfo, settings: Settings): void {
     const heights = layerHeights(info, settings.spread);
     this.floors.forEach((floor, layer) => {
       const bottom = heights[layer]?.bottom ?? 0;
       const visible = settings.solid && settings.spread > 0 && layer > 0 && bottom < settings.clipHeight;
       floor.setHeight(bottom);
-      floor.show(visible ? this.shown : [], info.cellSize);
+      floor.show(visible ? this.shown : [], level, info.cellSize);
     });
   }
 }

@@ -10,6 +10,8 @@ export const MAX_PITCH = (82 * Math.PI) / 180;
 export class ViewCamera {
   pitch = 0.95; // of the solid view, from the vertical, radians
   solid = false;
+  /** Height that the solid view looks at, metres: the middle of layers that are spread apart. */
+  aim = 0;
   private readonly flat = new OrthographicCamera(-1, 1, 1, -1, -200, 200);
   private readonly deep = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.05, 2000);
 
@@ -57,10 +59,10 @@ export class ViewCamera {
     this.deep.near = Math.max(0.02, distance / 200);
     this.deep.far = distance * 12 + 50;
     const back = distance * Math.sin(this.pitch);
-    this.deep.position.set(view.x + back * Math.sin(view.turn), view.y - back * Math.cos(view.turn), distance * Math.cos(this.pitch));
+    this.deep.position.set(view.x + back * Math.sin(view.turn), view.y - back * Math.cos(view.turn), this.aim + distance * Math.cos(this.pitch));
     this.deep.up.set(-Math.sin(view.turn), Math.cos(view.turn), 0);
     if (this.pitch > 0.01) this.deep.up.set(0, 0, 1);
-    this.deep.lookAt(view.x, view.y, 0);
+    this.deep.lookAt(view.x, view.y, this.aim);
     this.deep.updateProjectionMatrix();
     this.deep.updateMatrixWorld();
   }
