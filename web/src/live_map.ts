@@ -3,7 +3,7 @@
 import type { ImageEvent, StreamEvent } from './decode';
 import type { MapInfo, TrajectoryPoint } from './gen/flogmap/v1/map_pb';
 import type { CameraModel, CellColumn, Features, ImageStream, Playback, Pose, Status } from './gen/flogmap/v1/stream_pb';
-import { Path, type PathPoint } from './path';
+import { Path } from './path';
 import { Signal } from './signal';
 import { TileStore, type TileKey } from './tile_store';
 import type { Rect } from './viewport';
@@ -43,11 +43,6 @@ export class LiveMap {
   readonly noticed = new Signal<Notice>();
 
   constructor(readonly tiles: TileStore) {}
-
-  /** Where the camera is, or was when the session ended before this page came. */
-  get lastPose(): Pick<PathPoint, 'pose' | 'state'> | undefined {
-    return this.pose ?? this.path.at(-1);
-  }
 
   /** What the map covers, metres; nothing before there is a tile. */
   get bounds(): Rect | undefined {

@@ -209,7 +209,7 @@ export class MapView {
 
   private follow(): void {
     const { follow } = this.settings.get();
-    const pose = this.live.lastPose?.pose;
+    const pose = this.live.pose?.pose;
     if (follow === 'free' || !pose || this.held) return;
     const turn = follow === 'heading' ? wrapAngle(heading(pose) - Math.PI / 2) : 0;
     this.glideTo({ ...this.viewport, scale: this.glide.target?.scale ?? this.viewport.scale, x: pose.x, y: pose.y, turn });
@@ -277,7 +277,7 @@ export class MapView {
     this.path.setScale(this.viewport.scale);
     this.stale = { tiles: !brought, path: pathLater, settings: false };
     if (pathLater) setTimeout(() => this.requestDraw(), Math.max(16, this.path.restsUntil() - performance.now()));
-    const pose = this.live.lastPose;
+    const pose = this.live.pose;
     if (pose?.pose && !this.held) {
       this.marker.setState(pose.state);
       this.marker.place(pose.pose, this.live.camera, this.viewport.scale, settings.solid);
