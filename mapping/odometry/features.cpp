@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 namespace flogmap {
 namespace {
@@ -83,41 +84,38 @@ struct Candidate {
   int rank_in_cell = 0;
 };
 
-bool is_summit(const Image<float>& strength, int x, int y) {
-  const float here = strength.at(x, y);
-  for (int v = y - 1; v <= y + 1; ++v) {
-    const float* row = strength.row(v);
-    for (int u = x - 1; u <= x + 1; ++u) {
-      if (row[u] > here) return false;
-    }
+/// Marks the pixels of row y that none of their eight neighbours surpasses.
+void mark_summits(const Image<float>& strength, int y, float least, std::vector<float>& tops,
+                  std::vector<std::uint8_t>& marks) {
+  const float *above = strength.row(y - 1), *here = strength.row(y), *below = strength.row(y + 1);
+  float* __restrict top = tops.data();
+  std::uint8_t* __restrict mark = marks.data();
+  const int width = strength.width;
+  for (int x = 0; x < width; ++x) top[x] = std::max(std::max(above[x], below[x]), here[x]);
+  for (int x = 1; x < width - 1; ++x) {
+    const float highest = std::max(std::max(top[x - 1], top[x + 1]), std::max(top[x], least));
+    mark[x] = static_cast<std::uint8_t>(here[x] >= highest);
   }
-  return true;
 }
 
-struct Block {
-  int left, top, right, bottom;
-};
-
-/// The strongest summit of a block; strength 0 if it has none stronger than `least`.
-Candidate strongest_summit(const Image<float>& strength, const Block& block, float least) {
-  Candidate best{block.left, block.top, 0};
-  for (int y = block.top; y < block.bottom; ++y) {
-    const float* row = strength.row(y);
-    for (int x = block.left; x < block.right; ++x) {
-      if (row[x] > best.strength && row[x] >= least && is_summit(strength, x, y)) best = {x, y, row[x]};
-    }
-  }
-  return best;
-}
-
+/// The strongest summit of every block that has one of at least that strength.
 std::vector<Candidate> summits(const Image<float>& strength, float least) {
-  std::vector<Candidate> candidates;
   const int right = strength.width - kCornerBorderPx, bottom = strength.height - kCornerBorderPx;
-  for (int y = kCornerBorderPx; y < bottom; y += kBlockPx) {
-    for (int x = kCornerBorderPx; x < right; x += kBlockPx) {
-      const Block block{x, y, std::min(x + kBlockPx, right), std::min(y + kBlockPx, bottom)};
-      const Candidate c = strongest_summit(strength, block, least);
-      if (c.strength > 0) candidates.push_back(c);
+  const int columns = (right - kCornerBorderPx) / kBlockPx + 1;
+  std::vector<Candidate> row_of_blocks(columns), candidates;
+  std::vector<float> tops(strength.width);
+  std::vector<std::uint8_t> marks(strength.width, 0);
+  for (int y = kCornerBorderPx; y < bottom; ++y) {
+    mark_summits(strength, y, least, tops, marks);
+    const auto end = marks.begin() + right;
+    for (auto m = marks.begin() + kCornerBorderPx; (m = std::find(m, end, 1)) != end; ++m) {
+      const int x = static_cast<int>(m - marks.begin());
+      Candidate& best = row_of_blocks[(x - kCornerBorderPx) / kBlockPx];
+      if (strength.at(x, y) > best.strength) best = {x, y, strength.at(x, y)};
+    }
+    if ((y - kCornerBorderPx) % kBlockPx != kBlockPx - 1 && y + 1 != bottom) continue;
+    for (Candidate& best : row_of_blocks) {
+      if (best.strength > 0) candidates.push_back(std::exchange(best, {}));
     }
   }
   return candidates;

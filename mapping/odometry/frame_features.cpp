@@ -56,12 +56,14 @@ std::vector<float> scales_by_nearness(const FrameFeatures& features, float dispa
 }
 
 std::optional<double> refine_disparity(const RectifiedFrame& frame, const Eigen::Vector2d& px,
-                                       double disparity_px) {
+                                       double disparity_px, const Slant& slant) {
   const double margin = PatchSource::kMargin;
   const bool inside = px.x() >= margin && px.y() >= margin && px.x() < frame.left.width - margin &&
                       px.y() < frame.left.height - margin;
   if (!inside) return std::nullopt;
-  const PatchAligner aligner(frame.left, px);
+  const PatchAligner aligner = slant.isZero()
+                                   ? PatchAligner(frame.left, px)
+                                   : PatchAligner(PatchSource(frame.left, px), left_from_right(slant));
   const auto found = aligner.find_in_row(frame.right, px - Eigen::Vector2d(disparity_px, 0), 1.5);
   if (!found || found->correlation < kLeastCorrelation) return std::nullopt;
   const double d = px.x() - found->px.x();

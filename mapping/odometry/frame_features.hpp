@@ -8,6 +8,7 @@
 #include "camera/stereo_camera.hpp"
 #include "camera/stereo_frame.hpp"
 #include "mapping/odometry/features.hpp"
+#include "mapping/odometry/slant.hpp"
 #include "mapping/odometry/stereo_pixel.hpp"
 #include "mapping/view.hpp"
 
@@ -30,10 +31,10 @@ struct FrameFeatures {
 [[nodiscard]] std::vector<float> scales_by_nearness(const FrameFeatures& features,
                                                     float disparity_of_scale_1);
 
-/// The disparity at a corner to a fraction of a pixel: the patch around it is looked for in the right
-/// picture, from the dense disparity. Nothing if it is not found there within 1.5 px, or too near to the
-/// border.
+/// The disparity at a corner to a fraction of a pixel: the patch around it, sheared as the right camera sees
+/// a surface of that slant, is looked for in the right picture, from the dense disparity. Nothing if it is
+/// not found there within 1.5 px, or too near to the border.
 [[nodiscard]] std::optional<double> refine_disparity(const RectifiedFrame& frame, const Eigen::Vector2d& px,
-                                                     double disparity_px);
+                                                     double disparity_px, const Slant& slant);
 
 }  // namespace flogmap

@@ -12,14 +12,14 @@ constexpr double kLeastCorrelation = 0.75;
 constexpr double kNearestZ_m = 0.05;
 constexpr double kCornerSigma_px = 0.05;  // the corner is where its patch says: only numerical noise
 
-/// How offsets in the current picture turn into offsets in the anchor's, for a small surface that faces the
-/// anchor.
-Eigen::Matrix2d anchor_from_current(const StereoCamera& camera, const Landmark& landmark,
-                                    const SE3& camera_from_anchor, const Eigen::Vector3d& p) {
-  const double metres_per_px = camera.baseline_m / landmark.anchor_pixel.z();
-  const Eigen::Matrix<double, 2, 3> J = project_jacobian(camera, p).topRows<2>();
-  const Eigen::Matrix2d current_from_anchor = metres_per_px * J * camera_from_anchor.linear().leftCols<2>();
-  return current_from_anchor.inverse();
+/// How a small piece of the landmark's surface is seen by the current camera: from offsets in the anchor's
+/// picture to those of x, y and d here.
+Eigen::Matrix<double, 3, 2> current_from_anchor(const StereoCamera& camera, const Landmark& landmark,
+                                                const SE3& camera_from_anchor, const Eigen::Vector3d& p) {
+  Eigen::Matrix<double, 3, 2> along_surface;
+  along_surface << Eigen::Matrix2d::Identity(), landmark.slant.transpose();
+  return project_jacobian(camera, p) * camera_from_anchor.linear() *
+         triangulate_jacobian(camera, landmark.anchor_pixel) * along_surface;
 }
 
 bool plausible_warp(const Eigen::Matrix2d& warp) {
@@ -30,8 +30,8 @@ bool plausible_warp(const Eigen::Matrix2d& warp) {
 }  // namespace
 
 Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
-                       const SE3& odometry_from_camera, const StereoPixel& pixel, std::int64_t id,
-                       double disparity_sigma_px) {
+                       const SE3& odometry_from_camera, const StereoPixel& pixel, const Slant& slant,
+                       std::int64_t id, double disparity_sigma_px) {
   const Eigen::Matrix3d J = odometry_from_camera.linear() * triangulate_jacobian(camera, pixel);
   const double xy = kCornerSigma_px * kCornerSigma_px;
   const Eigen::Vector3d noise(xy, xy, disparity_sigma_px * disparity_sigma_px);
@@ -39,6 +39,7 @@ Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
           .patch = PatchSource(frame.left, pixel.head<2>()),
           .odometry_from_anchor = odometry_from_camera,
           .anchor_pixel = pixel,
+          .slant = slant,
           .in_odometry = odometry_from_camera * triangulate(camera, pixel),
           .covariance = J * noise.asDiagonal() * J.transpose()};
 }
@@ -61,11 +62,13 @@ std::optional<Sighting> find_landmark(const StereoCamera& camera, const Rectifie
   if (!expected) return std::nullopt;
   const Eigen::Vector3d p = camera_from_odometry * landmark.in_odometry;
   const SE3 camera_from_anchor = camera_from_odometry * landmark.odometry_from_anchor;
-  const Eigen::Matrix2d warp = anchor_from_current(camera, landmark, camera_from_anchor, p);
+  const auto seen_now = current_from_anchor(camera, landmark, camera_from_anchor, p);
+  const Eigen::Matrix2d warp = seen_now.topRows<2>().inverse();
   if (!plausible_warp(warp)) return std::nullopt;
   const auto left = PatchAligner(landmark.patch, warp).find(frame.left, expected->head<2>(), radius_px);
   if (!left || left->correlation < kLeastCorrelation) return std::nullopt;
-  const auto disparity = refine_disparity(frame, left->px, expected->z());
+  const auto disparity =
+      refine_disparity(frame, left->px, expected->z(), (seen_now.row(2) * warp).transpose());
   if (!disparity) return std::nullopt;
   return Sighting{landmark.id, {left->px.x(), left->px.y(), *disparity}};
 }

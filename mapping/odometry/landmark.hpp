@@ -8,6 +8,7 @@
 #include "camera/stereo_camera.hpp"
 #include "camera/stereo_frame.hpp"
 #include "mapping/odometry/patch_alignment.hpp"
+#include "mapping/odometry/slant.hpp"
 #include "mapping/odometry/stereo_pixel.hpp"
 #include "mapping/view.hpp"
 
@@ -18,6 +19,7 @@ struct Landmark {
   PatchSource patch;  // from the key frame where it was first seen, the anchor
   SE3 odometry_from_anchor;
   StereoPixel anchor_pixel;
+  Slant slant = Slant::Zero();      // of its surface, in the anchor's picture
   Eigen::Vector3d in_odometry;      // metres
   Eigen::Matrix3d covariance;       // of in_odometry, the anchor's pose taken as exact
   std::int64_t last_key_frame = 0;  // the newest that saw it
@@ -34,7 +36,7 @@ struct Sighting {
 /// A new landmark at a corner of a key frame.
 [[nodiscard]] Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
                                      const SE3& odometry_from_camera, const StereoPixel& pixel,
-                                     std::int64_t id, double disparity_sigma_px);
+                                     const Slant& slant, std::int64_t id, double disparity_sigma_px);
 
 /// Where a pose puts a landmark; nothing unless it is before the camera and well inside both pictures.
 [[nodiscard]] std::optional<StereoPixel> expected_pixel(const StereoCamera& camera, const Landmark& landmark,

@@ -31,20 +31,22 @@ class Spacing {
 
 }  // namespace
 
-void LocalMap::add_key_frame(const RectifiedFrame& frame, FrameFeatures features,
-                             const SE3& odometry_from_camera, std::vector<Sighting> sightings) {
+void LocalMap::add_key_frame(const RectifiedFrame& frame, const DisparityImage& disparity,
+                             FrameFeatures features, const SE3& odometry_from_camera,
+                             std::vector<Sighting> sightings) {
   KeyFrame key_frame{.id = next_key_frame_++,
                      .odometry_from_camera = odometry_from_camera,
                      .left = frame.left,
                      .features = std::move(features),
                      .sightings = std::move(sightings)};
   for (const Sighting& s : key_frame.sightings) landmarks_.at(s.landmark).last_key_frame = key_frame.id;
-  add_landmarks(frame, key_frame);
+  add_landmarks(frame, disparity, key_frame);
   key_frames_.push_back(std::move(key_frame));
   if (static_cast<int>(key_frames_.size()) > max_key_frames_) forget_oldest();
 }
 
-void LocalMap::add_landmarks(const RectifiedFrame& frame, KeyFrame& key_frame) {
+void LocalMap::add_landmarks(const RectifiedFrame& frame, const DisparityImage& disparity,
+                             KeyFrame& key_frame) {
   Spacing spacing(frame.left.width, frame.left.height);
   for (const Sighting& s : key_frame.sightings) spacing.take(s.pixel.head<2>());
   const FrameFeatures& features = key_frame.features;
@@ -52,12 +54,13 @@ void LocalMap::add_landmarks(const RectifiedFrame& frame, KeyFrame& key_frame) {
     if (static_cast<int>(key_frame.sightings.size()) >= max_landmarks_) return;
     const Eigen::Vector2d px = features.corners[i].px.cast<double>();
     if (!spacing.is_free(px)) continue;
-    const auto d = refine_disparity(frame, px, features.disparity_px[i]);
+    const Slant slant = slant_at(disparity, features.corners[i].px, features.disparity_px[i]);
+    const auto d = refine_disparity(frame, px, features.disparity_px[i], slant);
     if (!d) continue;
     spacing.take(px);
     const StereoPixel pixel(px.x(), px.y(), *d);
-    Landmark landmark = make_landmark(camera_, frame, key_frame.odometry_from_camera, pixel, next_landmark_++,
-                                      disparity_sigma_px_);
+    Landmark landmark = make_landmark(camera_, frame, key_frame.odometry_from_camera, pixel, slant,
+                                      next_landmark_++, disparity_sigma_px_);
     landmark.last_key_frame = key_frame.id;
     key_frame.sightings.push_back({landmark.id, pixel});
     landmarks_.emplace(landmark.id, std::move(landmark));

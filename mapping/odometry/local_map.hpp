@@ -26,8 +26,8 @@ class LocalMap {
         disparity_sigma_px_(disparity_sigma_px) {}
 
   /// Takes a frame in. `sightings`: the landmarks that it sees; new ones are made at its other corners.
-  void add_key_frame(const RectifiedFrame& frame, FrameFeatures features, const SE3& odometry_from_camera,
-                     std::vector<Sighting> sightings);
+  void add_key_frame(const RectifiedFrame& frame, const DisparityImage& disparity, FrameFeatures features,
+                     const SE3& odometry_from_camera, std::vector<Sighting> sightings);
 
   /// Oldest first.
   [[nodiscard]] const std::deque<KeyFrame>& key_frames() const { return key_frames_; }
@@ -44,7 +44,7 @@ class LocalMap {
   void clear();
 
  private:
-  void add_landmarks(const RectifiedFrame& frame, KeyFrame& key_frame);
+  void add_landmarks(const RectifiedFrame& frame, const DisparityImage& disparity, KeyFrame& key_frame);
   void forget_oldest();
 
   StereoCamera camera_;

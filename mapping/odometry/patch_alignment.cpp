@@ -76,16 +76,29 @@ PatchSource::Samples PatchSource::sample(const Eigen::Matrix2d& source_from_pict
   constexpr float kLimit = static_cast<float>(kSide) - 1.001F;
   Samples samples;
   for (int row = 0; row < kSampleSide; ++row) {
-    for (int column = 0; column < kSampleSide; ++column) {
-      const Eigen::Vector2f at =
-          first + static_cast<float>(column) * step.col(0) + static_cast<float>(row) * step.col(1);
-      const float x = std::clamp(at.x(), 0.0F, kLimit), y = std::clamp(at.y(), 0.0F, kLimit);
+    const Eigen::Vector2f start = first + static_cast<float>(row) * step.col(1);
+    std::array<float, kSampleSide> a, b, upper, upper_next, lower,
+        lower_next;  // steps that go many at a time
+    std::array<int, kSampleSide> index;
+    for (int i = 0; i < kSampleSide; ++i) {
+      const float x = std::clamp(start.x() + static_cast<float>(i) * step(0, 0), 0.0F, kLimit);
+      const float y = std::clamp(start.y() + static_cast<float>(i) * step(1, 0), 0.0F, kLimit);
       const int u = static_cast<int>(x), v = static_cast<int>(y);
-      const float a = x - static_cast<float>(u), b = y - static_cast<float>(v);
-      const std::uint8_t* p = grey_.data() + v * kSide + u;
-      const float upper = p[0] + a * static_cast<float>(p[1] - p[0]);
-      const float lower = p[kSide] + a * static_cast<float>(p[kSide + 1] - p[kSide]);
-      samples[row * kSampleSide + column] = upper + b * (lower - upper);
+      a[i] = x - static_cast<float>(u);
+      b[i] = y - static_cast<float>(v);
+      index[i] = v * kSide + u;
+    }
+    for (int i = 0; i < kSampleSide; ++i) {
+      const std::uint8_t* p = grey_.data() + index[i];
+      upper[i] = p[0];
+      upper_next[i] = p[1];
+      lower[i] = p[kSide];
+      lower_next[i] = p[kSide + 1];
+    }
+    for (int i = 0; i < kSampleSide; ++i) {
+      const float top = upper[i] + a[i] * (upper_next[i] - upper[i]);
+      const float bottom = lower[i] + a[i] * (lower_next[i] - lower[i]);
+      samples[row * kSampleSide + i] = top + b[i] * (bottom - top);
     }
   }
   return samples;

@@ -135,15 +135,12 @@ class Placing {
 }  // namespace
 
 PlacementResult place(const StereoCamera& camera, const LocalMap& map, const RectifiedFrame& frame,
-                      const FrameFeatures& features, const SE3& last_odometry_from_camera, int num_key_frames,
-                      const PlacementOptions& options) {
+                      const FrameFeatures& features, const std::vector<const KeyFrame*>& known,
+                      const SE3& last_odometry_from_camera, const PlacementOptions& options) {
   Placing placing(camera, map, frame, features, options);
-  const auto& key_frames = map.key_frames();
-  const int n = std::min(num_key_frames, static_cast<int>(key_frames.size()));
   for (const PatchFrame patches : {PatchFrame::upright, PatchFrame::own_orientation}) {
-    for (int i = 0; i < n; ++i) {
-      const KeyFrame& key = key_frames[key_frames.size() - 1 - i];
-      if (placing.try_key_frame(key, patches)) return std::move(placing).result();
+    for (const KeyFrame* key : known) {
+      if (placing.try_key_frame(*key, patches)) return std::move(placing).result();
     }
   }
   placing.try_pose(last_odometry_from_camera, kLastPose);

@@ -52,11 +52,11 @@ struct PlacementResult {
   std::string reason;
 };
 
-/// Tries the newest `num_key_frames` key frames, first upright, then turned, then the last known pose, until
-/// one convinces or two key frames say the same; else the one with most inliers, if they are enough.
+/// Tries `known` frames in their order, first upright, then turned, then the last known pose, until one
+/// convinces or two of them say the same; else the one with most inliers, if they are enough.
 [[nodiscard]] PlacementResult place(const StereoCamera& camera, const LocalMap& map,
                                     const RectifiedFrame& frame, const FrameFeatures& features,
-                                    const SE3& last_odometry_from_camera, int num_key_frames,
-                                    const PlacementOptions& options);
+                                    const std::vector<const KeyFrame*>& known,
+                                    const SE3& last_odometry_from_camera, const PlacementOptions& options);
 
 }  // namespace flogmap

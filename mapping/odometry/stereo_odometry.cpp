@@ -1,6 +1,7 @@
 #include "mapping/odometry/stereo_odometry.hpp"
 
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -28,10 +29,12 @@ void check(const OdometryOptions& options, const StereoCamera& camera) {
 /// What is known of the current frame before it has a pose.
 struct Current {
   const RectifiedFrame& frame;
+  const DisparityImage& disparity;
   FrameFeatures features;
 };
 
-constexpr int kKeyFramesToTry = 3;  // while not lost
+constexpr int kKeyFramesToTry = 3;       // while not lost
+constexpr std::int64_t kLastFrame = -2;  // its number, as key frames have theirs
 
 }  // namespace
 
@@ -51,6 +54,7 @@ class StereoOdometry::Tracker {
 
   void reset() {
     map_.clear();
+    last_.reset();
     pose_ = SE3::Identity();
     num_lost_ = 0;
     segment_ = 0;
@@ -58,7 +62,7 @@ class StereoOdometry::Tracker {
 
  private:
   Tracking track_frame(const RectifiedFrame& frame, const DisparityImage& disparity) {
-    Current current{frame, extract_features(camera_, frame.left, disparity, options_.corners)};
+    Current current{frame, disparity, extract_features(camera_, frame.left, disparity, options_.corners)};
     Tracking tracking;
     for (const Corner& corner : current.features.corners) tracking.corners_px.push_back(corner.px);
     const bool first = map_.key_frames().empty();
@@ -68,12 +72,23 @@ class StereoOdometry::Tracker {
                           why_too_few_corners(frame.left, current.features, options_.min_corners, !first));
     }
     if (first) return start(std::move(tracking), current, "");
-    const int num_key_frames = num_lost_ == 0 ? kKeyFramesToTry : options_.max_key_frames;
     auto [placement, reason] =
-        place(camera_, map_, frame, current.features, pose_, num_key_frames, options_.placement);
+        place(camera_, map_, frame, current.features, known_frames(), pose_, options_.placement);
     if (placement) return with_pose(std::move(tracking), current, *placement);
     if (++num_lost_ <= options_.max_lost_frames) return without_pose(std::move(tracking), std::move(reason));
     return start_segment(std::move(tracking), current, reason);
+  }
+
+  /// What a frame is compared with: the newest key frame, the last frame that has a pose, older key frames.
+  [[nodiscard]] std::vector<const KeyFrame*> known_frames() const {
+    const int most = num_lost_ == 0 ? kKeyFramesToTry : options_.max_key_frames;
+    std::vector<const KeyFrame*> known;
+    for (auto key = map_.key_frames().rbegin(); key != map_.key_frames().rend(); ++key) {
+      if (static_cast<int>(known.size()) >= most + (last_ ? 1 : 0)) break;
+      known.push_back(&*key);
+      if (known.size() == 1 && last_) known.push_back(&*last_);
+    }
+    return known;
   }
 
   Tracking without_pose(Tracking tracking, std::string reason) const {
@@ -88,13 +103,14 @@ class StereoOdometry::Tracker {
     tracking.reason = std::move(reason);
     tracking.odometry_from_camera = pose_;
     tracking.new_key_frame = true;
-    map_.add_key_frame(current.frame, std::move(current.features), pose_, {});
+    map_.add_key_frame(current.frame, current.disparity, std::move(current.features), pose_, {});
     num_lost_ = 0;
     return tracking;
   }
 
   Tracking start_segment(Tracking tracking, Current& current, const std::string& reason) {
     map_.clear();
+    last_.reset();
     ++segment_;
     return start(std::move(tracking), current,
                  "not found again (" + reason + "): goes on from the last known pose");
@@ -121,8 +137,16 @@ class StereoOdometry::Tracker {
     tracking.new_key_frame = num_inliers < options_.key_frame_overlap *
                                                static_cast<double>(map_.key_frames().back().sightings.size());
     note(placed);
-    if (tracking.new_key_frame) {
-      map_.add_key_frame(current.frame, std::move(current.features), pose_, inliers_of(placed));
+    if (!tracking.new_key_frame) {
+      last_ = KeyFrame{.id = kLastFrame,
+                       .odometry_from_camera = pose_,
+                       .left = current.frame.left,
+                       .features = std::move(current.features),
+                       .sightings = {}};
+    } else {
+      last_.reset();
+      map_.add_key_frame(current.frame, current.disparity, std::move(current.features), pose_,
+                         inliers_of(placed));
     }
     return tracking;
   }
@@ -162,9 +186,10 @@ class StereoOdometry::Tracker {
   OdometryOptions options_;
   StereoCamera camera_;
   LocalMap map_;
-  SE3 pose_ = SE3::Identity();  // the last known
-  int segment_ = 0;             // see Tracking::segment
-  int num_lost_ = 0;            // frames with corners but no pose, in a row
+  std::optional<KeyFrame> last_;  // frame with a pose, unless it is the newest key frame; sightings left out
+  SE3 pose_ = SE3::Identity();    // the last known
+  int segment_ = 0;               // see Tracking::segment
+  int num_lost_ = 0;              // frames with corners but no pose, in a row
 };
 
 StereoOdometry::StereoOdometry(const OdometryOptions& options, const StereoCamera& camera) {
