@@ -96,7 +96,8 @@ std::vector<Bits> agreement_graph(const std::vector<Prepared>& prepared, const A
 /// The candidate that leaves most candidates; the smallest index decides between equals. -1 if there is none.
 int best_connected(const std::vector<Bits>& graph, const Bits& candidates) {
   int best = -1, best_count = -1;
-  for (int i = 0; i < static_cast<int>(graph.size()); ++i) {
+  const int all_others = count_common(candidates, candidates) - 1;  // nothing leaves more than these
+  for (int i = 0; i < static_cast<int>(graph.size()) && best_count < all_others; ++i) {
     if (!has(candidates, i)) continue;
     const int count = count_common(graph[i], candidates);
     if (count > best_count) {

@@ -7,8 +7,9 @@
 
 namespace flogmap {
 
-/// (dd/dx, dd/dy) of the left picture, px per px: zero for a surface that faces the cameras, 0.3 and more on a
-/// floor. A patch that is taken to face them is found where its texture is, and that with the wrong disparity.
+/// (dd/dx, dd/dy) of the left picture, px per px: zero for a surface that faces the cameras, 0.3 and more on
+/// a floor. A patch that is taken to face them is found where its texture is, and that with the wrong
+/// disparity.
 using Slant = Eigen::Vector2d;
 
 /// The plane through the dense disparities around a corner that belong to the surface of disparity
