@@ -35,8 +35,9 @@ RectifiedFrame textured_surface(const Slant& slant, std::uint32_t seed) {
   const auto grey = [seed](double x, double y) {
     return static_cast<std::uint8_t>(40.5 + 150 * value_noise(x / 5, y / 5, seed));
   };
-  RectifiedFrame frame{
-      .timestamp_ns = 1, .left = Image<std::uint8_t>(kWidth, kHeight), .right = Image<std::uint8_t>(kWidth, kHeight)};
+  RectifiedFrame frame{.timestamp_ns = 1,
+                       .left = Image<std::uint8_t>(kWidth, kHeight),
+                       .right = Image<std::uint8_t>(kWidth, kHeight)};
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       frame.left.at(x, y) = grey(x, y);
