@@ -167,8 +167,8 @@ void add_stereo_options(OptionTable& table, StereoOptions& stereo) {
   table.choice<MatcherKind>("matcher", stereo.matcher,
                             {{"block", MatcherKind::block}, {"sgm", MatcherKind::sgm}},
                             "dense stereo method");
-  table.integer("min-disparity", "PX", stereo.min_disparity, -1024, 1024, "smallest disparity searched");
-  table.add(auto_integer("num-disparities", stereo.num_disparities, 1, 1024,
+  table.integer("min-disparity", "PX", stereo.min_disparity, -256, 1024, "smallest disparity searched");
+  table.add(auto_integer("num-disparities", stereo.num_disparities, 1, 256,
                          "how many disparities are searched; auto = as --nearest needs"));
   table.number("nearest", "METRES", stereo.nearest_m, 0.01, 1000, "nothing nearer than this is expected");
 }
