@@ -32,6 +32,15 @@ async function openPage(browser, url, size, scheme, hash = '') {
   return page;
 }
 
+/** The picture of the README: the map as it grows, and the camera's pictures as fresh as they are. */
+async function readme(browser, url) {
+  const page = await openPage(browser, url, DESKTOP, 'dark');
+  await page.waitForTimeout(6000);
+  await page.waitForFunction(() => document.querySelector('.chip')?.textContent === 'Live' && ![...document.querySelectorAll('.picture-age')].some((age) => age.classList.contains('old')));
+  await page.screenshot({ path: path.join(folder, '../pictures/page.png'), timeout: 180_000 });
+  await page.close();
+}
+
 /** Frames of the growing map, `FRAMES` over the time of mapping. */
 async function film(browser, url) {
   const page = await openPage(browser, url, { width: 880, height: 560 }, 'dark');
@@ -117,6 +126,7 @@ const browser = await chromium.launch({ executablePath: process.env.FLOGMAP_CHRO
 try {
   if (only) await new Promise((resolve) => { setTimeout(resolve, 1000 * MAPPED_S); });
   else await film(browser, url);
+  if (!only || only.includes('page')) await readme(browser, url);
   await fetch(`${url}/api/v1/session:pause`, { method: 'POST' });
   for (const [name, size, scheme, hash, act] of SHOTS.filter(([name]) => !only || only.includes(name))) {
     const page = await openPage(browser, url, size, scheme, hash);
