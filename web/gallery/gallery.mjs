@@ -45,6 +45,7 @@ async function readme(browser, url) {
 async function film(browser, url) {
   const page = await openPage(browser, url, { width: 880, height: 560 }, 'dark');
   await page.keyboard.press('[');
+  await page.waitForFunction(() => window.__flog.tiles() > 0);
   const frames = [];
   for (let i = 0; i < FRAMES; ++i) {
     frames.push(await page.screenshot({ timeout: 180_000 }));

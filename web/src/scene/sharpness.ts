@@ -4,6 +4,7 @@
 const AIM_MS = 25; // for a picture while it moves
 const REST_MS = 180; // without a movement, until it is sharp again; longer where pictures take long:
 const REST_PICTURES = 3; // of the last one's time, since movements come no more often than pictures
+const LONGEST_REST_MS = 800;
 const LEAST = 0.5; // per CSS pixel
 const LEARNS = 0.4; // of a new picture's time
 
@@ -40,7 +41,7 @@ export class Sharpness {
 
   /** A picture with `ratio` pixels per CSS pixel took so long. */
   took(ms: number, ratio: number): void {
-    this.restMs = Math.max(REST_MS, REST_PICTURES * ms);
+    this.restMs = Math.min(LONGEST_REST_MS, Math.max(REST_MS, REST_PICTURES * ms));
     if (ratio < this.full) return;
     this.sharpMs = this.sharpMs > 0 ? this.sharpMs + LEARNS * (ms - this.sharpMs) : ms;
   }
