@@ -33,7 +33,7 @@ test('the time between left and right pictures is told and drawn, with its limit
     await page.setViewportSize({ width: 1280, height: 1600 });
     await open(page, `${program.url}/?fresh`, 1);
     await expect(page.locator('.facts')).toContainText('1.50 ms, at most 1.5');
-    const chart = page.locator('.chart', { hasText: 'Left to right' });
+    const chart = page.locator('.chart-box', { hasText: 'Left to right' });
     await expect(chart).toContainText('allowed');
     await chart.scrollIntoViewIfNeeded();
     await page.waitForTimeout(5000); // a sample a second
