@@ -15,8 +15,8 @@ float median(std::vector<float> values) {
 }
 
 /// The closed form knows distances only; pixels know better. Stays where it started if that fails.
-SE3 refined(const StereoCamera& camera, const std::vector<PointPair>& pairs, const SE3& start,
-            double sigma_px) {
+void refine(const StereoCamera& camera, const std::vector<PointPair>& pairs, const SE3& start,
+            double sigma_px, FrameMatch& match) {
   std::vector<MotionPoint> points;
   for (const PointPair& pair : pairs) {
     points.push_back(
@@ -26,7 +26,8 @@ SE3 refined(const StereoCamera& camera, const std::vector<PointPair>& pairs, con
   options.image_sigma_px = sigma_px;
   options.disparity_sigma_px = sigma_px;
   const auto motion = refine_motion(camera, points, start, options);
-  return motion ? motion->current_from_key : start;
+  match.current_from_key = motion ? motion->current_from_key : start;
+  if (motion) match.rival = motion->with_decisive;
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ FrameMatch match_points(const StereoCamera& camera, const std::vector<Eigen::Vec
                            point_covariance(camera, points[i].in_current).trace()));
   }
   const auto start = align_points(chosen, weights);
-  if (start) match.current_from_key = refined(camera, chosen, *start, consistency.image_sigma_px);
+  if (start) refine(camera, chosen, *start, consistency.image_sigma_px, match);
   return match;
 }
 

@@ -24,6 +24,7 @@ struct MatchableFrame {
 
 struct FrameMatch {
   std::optional<SE3> current_from_key;  // good to a pixel or so; nothing if too few agree or on a line
+  std::optional<SE3> rival;  // another one: what a pair asks for that outweighs all others together
   std::vector<IndexPair> pairs;
   std::vector<int> consistent;  // indices of pairs
 };

@@ -1,6 +1,8 @@
 #include "mapping/odometry/motion_solver.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
 
@@ -11,6 +13,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix3x6 = Eigen::Matrix<double, 3, 6>;
 
 constexpr double kNearestZ_m = 1e-3;
+constexpr double kMajority = 0.5;  // of the information about a direction of the motion
+constexpr int kFewest = 3;         // points that fix a motion
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
@@ -119,9 +123,43 @@ class Problem {
     return count;
   }
 
+  /// The used point that outweighs all others together in some direction of the motion.
+  [[nodiscard]] std::optional<std::size_t> decisive(const SE3& pose) const {
+    const Covariance6 covariance = linearise(pose).H.inverse();
+    std::optional<std::size_t> most;
+    double highest = kMajority;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (!used_[i]) continue;
+      const double leverage = leverage_above_half(points_[i], pose, covariance);
+      if (!(leverage > highest)) continue;
+      highest = leverage;
+      most = i;
+    }
+    return most;
+  }
+
+  void leave_out(std::size_t i) { used_[i] = false; }
+
   [[nodiscard]] const std::vector<bool>& used() const { return used_; }
 
  private:
+  /// The largest share that a point has in the information about a direction w of the motion,
+  ///   max_w  w'H_i w / w'H w = largest eigenvalue of  A J H^-1 J' A',  A'A = the point's information;
+  /// 0 where that cannot be above a half because the eigenvalues' sum is not.
+  [[nodiscard]] double leverage_above_half(const MotionPoint& point, const SE3& pose,
+                                           const Covariance6& covariance) const {
+    const auto r = residual_of(camera_, point, pose, options_);
+    if (!r) return 0;
+    const Eigen::Matrix3d information =
+        robust_weight(r->squared_sigmas, options_.robust_sigmas) * r->information;
+    const Eigen::Matrix3d prediction = r->jacobian * covariance * r->jacobian.transpose();
+    if (!((information * prediction).trace() > kMajority)) return 0;
+    const Eigen::Matrix3d A = information.llt().matrixU();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> shares(A * prediction * A.transpose(),
+                                                                Eigen::EigenvaluesOnly);
+    return shares.eigenvalues().maxCoeff();
+  }
+
   const StereoCamera& camera_;
   const std::vector<MotionPoint>& points_;
   const MotionOptions& options_;
@@ -134,6 +172,16 @@ std::optional<Covariance6> covariance_of(const NormalEquations& n) {
   if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < 1e-6) return std::nullopt;
   const double freedom = std::max(3.0 * n.num_points - 6, 1.0);
   return Covariance6(ldlt.solve(Covariance6::Identity()) * std::max(1.0, n.cost / freedom));
+}
+
+void leave_out_decisive(Problem& problem, Motion& motion) {
+  if (motion.num_inliers <= kFewest) return;
+  const auto decisive = problem.decisive(motion.current_from_key);
+  if (!decisive) return;
+  problem.leave_out(*decisive);
+  --motion.num_inliers;
+  motion.with_decisive = motion.current_from_key;
+  motion.current_from_key = problem.solve(motion.current_from_key);
 }
 
 }  // namespace
@@ -175,15 +223,16 @@ std::optional<SE3> align_points(const std::vector<PointPair>& pairs, const std::
 
 std::optional<Motion> refine_motion(const StereoCamera& camera, const std::vector<MotionPoint>& points,
                                     const SE3& start, const MotionOptions& options) {
-  if (points.size() < 3) return std::nullopt;
+  if (points.size() < kFewest) return std::nullopt;
   Problem problem(camera, points, options);
   Motion motion;
   motion.current_from_key = problem.solve(start);
   for (int pass = 0; pass < 2; ++pass) {  // outliers bend the first solution, and with it who is one
-    if (problem.keep_inliers(motion.current_from_key) < 3) return std::nullopt;
+    if (problem.keep_inliers(motion.current_from_key) < kFewest) return std::nullopt;
     motion.current_from_key = problem.solve(motion.current_from_key);
   }
   motion.num_inliers = problem.keep_inliers(motion.current_from_key);
+  leave_out_decisive(problem, motion);
   motion.inlier = problem.used();
   const auto covariance = covariance_of(problem.linearise(motion.current_from_key));
   if (!covariance) return std::nullopt;

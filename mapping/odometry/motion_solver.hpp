@@ -33,6 +33,7 @@ struct Motion {
   Covariance6 covariance = Covariance6::Zero();  // perturbation exp(x) * current_from_key
   std::vector<bool> inlier;                      // one per point
   int num_inliers = 0;
+  std::optional<SE3> with_decisive;  // if one point outweighed all others together: what it asked for
 };
 
 /// Closed form: the rigid motion with the least weighted squared distances (Arun, Huang & Blostein 1987;
@@ -43,6 +44,9 @@ struct Motion {
 /// Levenberg-Marquardt from `start` on the stereo pixels of the current frame. The errors of the key frame's
 /// pixels enter through the points' covariances, so all four images count, as if every point were estimated
 /// along (to first order). Nothing if the points do not determine six degrees of freedom.
+///
+/// A point that outweighs all others together in some direction of the motion fits wherever it was found, and
+/// nothing would contradict it if it were a wrong one. It is left out and counts as an outlier.
 [[nodiscard]] std::optional<Motion> refine_motion(const StereoCamera& camera,
                                                   const std::vector<MotionPoint>& points, const SE3& start,
                                                   const MotionOptions& options);

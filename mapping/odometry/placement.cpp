@@ -26,8 +26,11 @@ class Placing {
     const auto match = match_frames(camera_, key.matchable(), {frame_.left, features_}, patches,
                                     options_.matching, options_.consistency);
     note(match, patches, key);
-    return match.current_from_key &&
-           try_pose(key.odometry_from_camera * match.current_from_key->inverse(), key.id);
+    for (const auto& current_from_key : {match.current_from_key, match.rival}) {
+      if (current_from_key && try_pose(key.odometry_from_camera * current_from_key->inverse(), key.id))
+        return true;
+    }
+    return false;
   }
 
   /// `source` tells hypotheses apart that are independent of one another: the key frame's id.
@@ -61,7 +64,10 @@ class Placing {
   }
 
  private:
+  /// Not where one landmark decided: if it was a wrong one, the landmarks that would say so lay out of reach
+  /// of the search, which goes on from the pose without it.
   [[nodiscard]] bool convincing() const {
+    if (best_.one_decided) return false;
     return best_.num_inliers >= options_.many_inliers ||
            (best_.num_inliers >= options_.convincing_inliers && best_.share() >= options_.convincing_share);
   }
@@ -119,6 +125,7 @@ class Placing {
                      .sightings = std::move(found.sightings),
                      .inlier = std::move(motion->inlier),
                      .num_inliers = motion->num_inliers,
+                     .one_decided = motion->with_decisive.has_value(),
                      .missed = std::move(found.missed)};
   }
 

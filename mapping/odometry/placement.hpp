@@ -33,6 +33,7 @@ struct Placement {
   std::vector<Sighting> sightings;
   std::vector<bool> inlier;  // one per sighting
   int num_inliers = 0;
+  bool one_decided = false;          // a landmark outweighed all others together, and was left out
   std::vector<std::int64_t> missed;  // landmarks that should be seen, but are not
 
   /// Standard deviations of the camera's position and orientation.

@@ -120,6 +120,43 @@ TEST(RefinedMotion, FarPointsOnlyLeaveTheTranslationUncertainAndSaySo) {
   EXPECT_GT(uncertainty(*far), 100 * uncertainty(*near));
 }
 
+/// A wall far away, and `num_near` points close by.
+std::vector<MotionPoint> far_wall_and_near(std::mt19937& random, const SE3& motion, int num_near) {
+  auto points = noisy_points(random, motion, 40, 0.1, 20, 22);
+  for (const auto& point : noisy_points(random, motion, num_near, 0.1, 1, 1.1)) points.push_back(point);
+  return points;
+}
+
+TEST(RefinedMotion, OneWrongPointThatNothingContradictsDoesNotDecide) {
+  std::mt19937 random(14);
+  std::uniform_real_distribution<double> off(-3, 3);
+  constexpr int kTrials = 100;
+  double sum = 0;  // as above; if the wrong point decides, the mean is above 50
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const SE3 motion = random_motion(random, 0.05, 0.02);
+    auto points = far_wall_and_near(random, motion, 1);
+    points.back().current += StereoPixel(off(random), off(random), off(random));
+    const auto found = refine_motion(kMatchCamera, points, SE3::Identity(), with_noise(0.1));
+    ASSERT_TRUE(found);
+    EXPECT_FALSE(found->inlier.back());
+    const Vector6 error = twist_of(found->current_from_key * motion.inverse());
+    sum += error.dot(found->covariance.ldlt().solve(error));
+  }
+  EXPECT_LT(sum / kTrials, 7.1);  // 6 and three times sqrt(12 / 100)
+}
+
+TEST(RefinedMotion, NearPointsThatAgreeAreBelieved) {
+  std::mt19937 random(16);
+  for (int trial = 0; trial < 100; ++trial) {
+    const SE3 motion = random_motion(random, 0.05, 0.02);
+    const auto points = far_wall_and_near(random, motion, 20);
+    const auto found = refine_motion(kMatchCamera, points, SE3::Identity(), with_noise(0.1));
+    ASSERT_TRUE(found);
+    EXPECT_FALSE(found->with_decisive);
+    EXPECT_GE(found->num_inliers, 57);
+  }
+}
+
 TEST(RefinedMotion, RefusesTooFewPoints) {
   std::mt19937 random(10);
   EXPECT_FALSE(
