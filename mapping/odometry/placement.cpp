@@ -26,11 +26,12 @@ class Placing {
     const auto match = match_frames(camera_, key.matchable(), {frame_.left, features_}, patches,
                                     options_.matching, options_.consistency);
     note(match, patches, key);
-    for (const auto& current_from_key : {match.current_from_key, match.rival}) {
-      if (current_from_key && try_pose(key.odometry_from_camera * current_from_key->inverse(), key.id))
-        return true;
+    bool convinced = false;
+    for (const auto& current_from_key : {match.current_from_key, match.rival}) {  // both: the better one wins
+      if (!current_from_key) continue;
+      convinced = try_pose(key.odometry_from_camera * current_from_key->inverse(), key.id) || convinced;
     }
-    return false;
+    return convinced;
   }
 
   /// `source` tells hypotheses apart that are independent of one another: the key frame's id.
