@@ -65,7 +65,14 @@ std::optional<StreamClose> StreamProtocol::on(const Subscribe& subscribe, Time n
   }
   wants_features_ = subscribe.features;
   outbox_.subscribe(subscribe, *state_.live);
+  if (outbox_.wants_pose() && state_.tracking) tell_last_pose(now);
   return std::nullopt;
+}
+
+/// Where the camera is, to one who comes while it rests: paused, or at the end of a recording.
+void StreamProtocol::tell_last_pose(Time now) {
+  const std::chrono::duration<double, std::milli> since = now - state_.tracked_at;
+  outbox_.pose(to_shared(encode_pose(*state_.tracking, state_.tracking->latency_ms + since.count())));
 }
 
 std::optional<StreamClose> StreamProtocol::on(const Viewport& viewport, Time) {

@@ -70,6 +70,7 @@ class StreamProtocol {
   std::optional<StreamClose> on(const Forget& forget, Time now);
   std::optional<StreamClose> on(const InspectCell& inspect, Time now);
   std::optional<StreamClose> on(const Ping& ping, Time now);
+  void tell_last_pose(Time now);
   std::optional<StreamClose> send_control(std::string message);
 
   ServerState& state_;

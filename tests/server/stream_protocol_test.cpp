@@ -158,6 +158,18 @@ TEST_F(ProtocolTest, AnyRateOfPosesMayBeAskedForAndTheNextOneCountsAtOnce) {
   EXPECT_TRUE(sends_pose(start_ + std::chrono::milliseconds(50)));
 }
 
+TEST_F(ProtocolTest, OneWhoComesWhileTheCameraRestsIsToldWhereItIs) {
+  state_.tracking = walk_.tracking();
+  state_.tracked_at = start_ - 2s;
+  StreamProtocol protocol(state_, Role::view, start_);
+  protocol.receive(hello_frame(), start_);
+  protocol.receive(subscribe_frame({{}, {}, 20, false}), start_);
+  const std::string pose = encode_pose(*state_.tracking, state_.tracking->latency_ms + 2000);
+  int told = 0;
+  while (const Bytes message = next(protocol, start_)) told += *message == pose ? 1 : 0;
+  EXPECT_EQ(told, 1);
+}
+
 TEST_F(ProtocolTest, VisibleTilesComeFirst) {
   StreamProtocol protocol(state_, Role::view, start_);
   protocol.receive(hello_frame(), start_);
