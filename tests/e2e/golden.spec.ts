@@ -22,8 +22,10 @@ let folder: string;
 let program: Program;
 test.beforeAll(async () => {
   folder = mkdtempSync(path.join(tmpdir(), 'flogmap-golden-'));
-  const out = path.join(folder, 'map');
-  execFileSync(PROGRAM, ['map', '--source', 'sim:two-boxes-near', '--max-frames', '40', '--out', out], { stdio: 'pipe', env: ENVIRONMENT });
+  const [walk, out] = [path.join(folder, 'walk'), path.join(folder, 'map')];
+  const run = (...args: string[]): Buffer => execFileSync(PROGRAM, args, { stdio: 'pipe', env: ENVIRONMENT });
+  run('simulate', '--scene', 'two-boxes-near', '--frames', '40', '--out', walk);
+  run('map', '--source', `euroc:${walk}`, '--poses', path.join(walk, 'groundtruth.tum'), '--out', out); // whatever becomes of odometry
   program = await Program.launch(['serve', '--store', path.join(out, 'map.flog')]);
 });
 test.afterAll(async () => {
