@@ -11,6 +11,8 @@ namespace {
 
 StreamClose bad_frame(std::string reason) { return {kCloseBadFrame, std::move(reason)}; }
 
+constexpr std::chrono::seconds kRests{1};  // a camera without a new pose for so long; else one comes at once
+
 /// Why a page of this map must begin anew; null if it may go on from what it has. After a kill it may hold
 /// tiles and poses that were never stored. A continued map begins above all revisions that could have been
 /// sent (server/commands/continued_map.cpp), where the store could tell; where it could not, they are above
@@ -65,7 +67,7 @@ std::optional<StreamClose> StreamProtocol::on(const Subscribe& subscribe, Time n
   }
   wants_features_ = subscribe.features;
   outbox_.subscribe(subscribe, *state_.live);
-  if (outbox_.wants_pose() && state_.tracking) tell_last_pose(now);
+  if (outbox_.wants_pose() && state_.tracking && now - state_.tracked_at >= kRests) tell_last_pose(now);
   return std::nullopt;
 }
 
