@@ -44,7 +44,7 @@ class CaptureControl final : public SessionControl {
   ControlResult level(const HandLevel& level) override;
 
   // capture thread
-  /// Blocks while paused or finished; then says what to do.
+  /// Blocks while paused and once the source has ended; then says what to do.
   CaptureTurn await_turn();
   /// Waits until the frame is due; cut short by a command, a pause or the end.
   void await_due(std::int64_t timestamp_ns);

@@ -38,14 +38,16 @@ void MapStage::correct(PathCorrection correction, std::uint64_t number) {
 void MapStage::begin(MapBegin map) {
   Item item;
   item.begin = std::move(map);
-  item.reached = std::make_shared<std::promise<void>>();
-  std::future<void> done = item.reached->get_future();
-  if (items_.push(std::move(item))) done.get();
+  wait_for(std::move(item));
 }
 
 void MapStage::wait_for_rest() {
   Item item;
   item.rest = true;
+  wait_for(std::move(item));
+}
+
+void MapStage::wait_for(Item item) {
   item.reached = std::make_shared<std::promise<void>>();
   std::future<void> done = item.reached->get_future();
   if (items_.push(std::move(item))) done.get();

@@ -33,7 +33,8 @@ class MapStage {
   /// in.
   void begin(MapBegin map);
 
-  /// Returns when everything so far is in the map, corrections as well; those not in batch or while ending.
+  /// Returns when everything so far is in the map. Corrections as well, unless they are for the end: in
+  /// batch, and while the server shuts down.
   void wait_for_rest();
 
   void run();
@@ -60,6 +61,7 @@ class MapStage {
     std::shared_ptr<std::promise<void>> reached;  // ... of the last two: open this
   };
 
+  void wait_for(Item item);
   std::optional<Item> next();
   void take_in(Item& item);
   void take_in(View& view);

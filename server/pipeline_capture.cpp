@@ -96,7 +96,7 @@ void Pipeline::restart(const std::string& reason, double position_s) {
 /// backwards, a new map begins.
 void Pipeline::go_to(double position_s) {
   const double now_s = control_.playback().position_s;
-  if (position_s < now_s || control_.state() == SessionState::finished) {
+  if (position_s < now_s) {
     restart("the recording was wound back", position_s);
   } else {
     control_.hurry_until(source_->info().first_timestamp_ns + static_cast<std::int64_t>(position_s * 1e9));

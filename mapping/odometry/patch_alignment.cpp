@@ -77,9 +77,8 @@ PatchSource::Samples PatchSource::sample(const Eigen::Matrix2d& source_from_pict
   Samples samples;
   for (int row = 0; row < kSampleSide; ++row) {
     const Eigen::Vector2f start = first + static_cast<float>(row) * step.col(1);
-    std::array<float, kSampleSide> a, b, upper, upper_next, lower,
-        lower_next;  // steps that go many at a time
-    std::array<int, kSampleSide> index;
+    std::array<int, kSampleSide> index;  // one step after the other, each for the whole row at once
+    std::array<float, kSampleSide> a, b, upper, upper_next, lower, lower_next;
     for (int i = 0; i < kSampleSide; ++i) {
       const float x = std::clamp(start.x() + static_cast<float>(i) * step(0, 0), 0.0F, kLimit);
       const float y = std::clamp(start.y() + static_cast<float>(i) * step(1, 0), 0.0F, kLimit);

@@ -9,9 +9,9 @@ namespace {
 constexpr int kRadius_px = 7;
 constexpr double kSameSurface_px = 2.5;  // from the corner's disparity
 constexpr double kFlat_px = 0.4;         // root mean square distance from the plane
-constexpr double kSteepest = 0.6;
-constexpr double kLeastShare = 0.6;
-constexpr double kFacing = 0.01;
+constexpr double kSteepest = 0.6;        // px per px; more is an edge rather than a surface
+constexpr double kLeastShare = 0.6;      // of the window that must belong to the surface
+constexpr double kFacing = 0.01;         // px per px; less is noise of the disparities
 
 }  // namespace
 

@@ -2,10 +2,9 @@
 import { expect, test, type Page } from '@playwright/test';
 import { rampColour } from '../../web/src/palette';
 import { styleValue, type Style } from '../../web/src/rules';
-import { keys, open, pixels, project, quiet, sameBytes, state, tile } from './flog_page';
+import { keys, open, pixels, PLANE, project, quiet, sameBytes, state, tile } from './flog_page';
 import { Program } from './program';
 
-const PLANE = 4096;
 let program: Program;
 
 test.beforeAll(async () => { program = await Program.start('sim:room'); });

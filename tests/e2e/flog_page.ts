@@ -23,7 +23,7 @@ export const keys = (page: Page): Promise<string[]> => page.evaluate(() => (wind
 export const tile = (page: Page, level: number, x: number, y: number): Promise<{ rev: number; planes: number[] } | null> =>
   page.evaluate(([l, tx, ty]) => (window as never as { __flog: { tile(...at: number[]): { rev: number; planes: number[] } | null } }).__flog.tile(l as number, tx as number, ty as number), [level, x, y]);
 
-const PLANE = 64 * 64;
+export const PLANE = 64 * 64;
 
 /** These tiles in the page are the server's, byte for byte. */
 export async function sameBytes(page: Page, program: Program, keysOfTiles: readonly string[]): Promise<void> {

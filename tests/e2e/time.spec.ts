@@ -36,6 +36,23 @@ test.describe('with a recording', () => {
       await program.end();
     }
   });
+
+  test('who comes after the end sees where the camera stands, and may play it again', async ({ page }) => {
+    const program = await Program.start(`euroc:${RECORDING}`, 0, ['--pace', 'fast']);
+    try {
+      await expect.poll(async () => (await program.json<{ state: string }>('session')).state, { timeout: 120_000 }).toBe('finished');
+      await page.waitForTimeout(1500); // it rests
+      await open(page, `${program.url}/?fresh`, 1);
+      const { epoch } = await state(page);
+      expect(await page.evaluate(() => (window as never as { __flog: { poseS: number } }).__flog.poseS)).toBeGreaterThan(0);
+      await page.screenshot({ path: path.join(test.info().outputDir, 'finished.png') });
+      await page.getByRole('button', { name: 'Play again from the start' }).click();
+      await expect.poll(async () => (await state(page)).epoch, { message: 'a new map begins' }).not.toBe(epoch);
+      await expect(page.getByRole('button', { name: 'Pause the replay' })).toBeVisible();
+    } finally {
+      await program.end();
+    }
+  });
 });
 
 /** CSS pixels from the middle of the map to the newest pose. */

@@ -13,7 +13,8 @@ export function formatTime(seconds: number): string {
 
 export function timeline(page: Page): HTMLElement {
   const { live, backend } = page;
-  const play = iconButton('pause', 'Pause the replay', () => void attempt(page, backend.changePlayback({ paused: !live.playback?.paused })));
+  const hasEnded = (): boolean => live.status?.sessionState === 'finished';
+  const play = iconButton('pause', 'Pause the replay', () => void attempt(page, backend.changePlayback(hasEnded() ? { position_s: 0 } : { paused: !live.playback?.paused })));
   const step = iconButton('step', 'One frame further', () => void attempt(page, backend.step()));
   const time = h('span', { class: 'timeline-time' });
   const scrub = h('input', { type: 'range', min: 0, max: 1, step: 0.01, 'aria-label': 'Position in the recording' });
@@ -29,11 +30,17 @@ export function timeline(page: Page): HTMLElement {
     void attempt(page, backend.changePlayback({ position_s: Number(scrub.value) }));
   });
   const element = h('div', { class: 'timeline', role: 'group', 'aria-label': 'Replay', hidden: true }, play, step, scrub, time, rate);
+  const showButton = (): void => {
+    const paused = live.playback?.paused ?? false;
+    const words = hasEnded() ? 'Play again from the start' : paused ? 'Go on with the replay' : 'Pause the replay';
+    setIcon(play, paused || hasEnded() ? 'play' : 'pause', words);
+    step.disabled = !paused;
+  };
+  live.statusChanged.on(showButton);
   live.playbackChanged.on((playback) => {
     element.hidden = !playback.seekable;
     document.body.classList.toggle('has-timeline', playback.seekable);
-    setIcon(play, playback.paused ? 'play' : 'pause', playback.paused ? 'Go on with the replay' : 'Pause the replay');
-    step.disabled = !playback.paused;
+    showButton();
     rate.value = String(RATES.find((value) => value === playback.rate) ?? 1);
     if (dragging) return;
     scrub.max = String(playback.durationS);
