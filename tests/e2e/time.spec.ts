@@ -45,7 +45,6 @@ test.describe('with a recording', () => {
       await open(page, `${program.url}/?fresh`, 1);
       const { epoch } = await state(page);
       expect(await page.evaluate(() => (window as never as { __flog: { poseS: number } }).__flog.poseS)).toBeGreaterThan(0);
-      await page.screenshot({ path: path.join(test.info().outputDir, 'finished.png') });
       await page.getByRole('button', { name: 'Play again from the start' }).click();
       await expect.poll(async () => (await state(page)).epoch, { message: 'a new map begins' }).not.toBe(epoch);
       await expect(page.getByRole('button', { name: 'Pause the replay' })).toBeVisible();

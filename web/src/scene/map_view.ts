@@ -85,7 +85,8 @@ export class MapView {
     if (this.walkthrough) this.scene.remove(this.walkthrough.group);
     if (walkthrough) this.scene.add(walkthrough.group);
     this.walkthrough = walkthrough;
-    this.ground.visible = this.path.group.visible = this.marker.group.visible = !walkthrough;
+    this.ground.visible = this.path.group.visible = !walkthrough;
+    this.marker.group.visible = false; // until the camera is placed
     this.stale = { tiles: true, path: true, settings: true };
     this.requestDraw();
   }
