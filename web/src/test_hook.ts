@@ -20,6 +20,8 @@ export interface TestHook {
   readonly textureBytes: number;
   /** Time of the newest pose, s. */
   readonly poseS: number;
+  /** What the left picture was taken with. */
+  readonly camera: { readonly focalPx: number; readonly cxPx: number; readonly cyPx: number; readonly widthPx: number; readonly heightPx: number } | null;
   /** Where the path begins and ends. */
   readonly path: readonly (readonly number[])[];
   keys(): string[];
@@ -48,6 +50,7 @@ export function installTestHook(page: Page): void {
     get tileBytes() { return live.tiles.bytes; },
     get textureBytes() { return view.tiles.textureBytes; },
     get poseS() { return Number(live.pose?.timeNs ?? 0n) / 1e9; },
+    get camera() { return live.camera; },
     get path() { return [live.path.at(0), live.path.at(-1)].map((point) => (point?.pose ? [point.pose.x, point.pose.y, point.pose.z] : [])); },
     keys: () => Array.from(live.tiles.all(), keyText),
     revisions: () => Array.from(live.tiles.all(), (tile) => [keyText(tile), Number(tile.rev)]),
