@@ -7,11 +7,13 @@ import type { CameraModel } from '../gen/flogmap/v1/stream_pb';
 
 const REACH_PX = 50; // of the field of view on the flat map
 const DOT_PX = 6;
+const FAN_OPACITY = 0.16;
+const FAN_OPACITY_SOLID = 0.05; // the picture is seen through it
 
 export class CameraMarker {
   readonly group = new Group();
   private readonly colour = new Color('#ff8a1f');
-  private readonly fan = new Mesh(new BufferGeometry(), new MeshBasicMaterial({ color: this.colour, transparent: true, opacity: 0.16, side: DoubleSide, depthTest: false }));
+  private readonly fan = new Mesh(new BufferGeometry(), new MeshBasicMaterial({ color: this.colour, transparent: true, opacity: FAN_OPACITY, side: DoubleSide, depthTest: false }));
   private readonly edge = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: this.colour, depthTest: false, transparent: true }));
   private readonly rim = new Mesh(new CircleGeometry(1, 32), new MeshBasicMaterial({ color: '#ffffff', depthTest: false, transparent: true }));
   private readonly dot = new Mesh(new CircleGeometry(1, 32), new MeshBasicMaterial({ color: this.colour, depthTest: false, transparent: true }));
@@ -51,6 +53,7 @@ export class CameraMarker {
   place(pose: PoseValue, camera: CameraModel | null, scale: number, solid: boolean): void {
     this.group.visible = true;
     const reach = (solid ? 1.6 : 1) * (REACH_PX / scale);
+    this.fan.material.opacity = solid ? FAN_OPACITY_SOLID : FAN_OPACITY;
     this.picture.visible = solid && this.picture.material.map !== null;
     const corners = cornerRays(camera).map(([x, y]): Vector => worldFromCamera(pose, [x * reach, y * reach, reach]));
     const tip: Vector = [pose.x, pose.y, pose.z];
