@@ -19,6 +19,7 @@ const CHOOSE_EVERY_RAD = 0.06;
 const ASK_EVERY_MS = 3000; // for new views, and for corrected poses
 const BODY_M = 1.8; // what stands higher is no wall to a walker
 const THRESHOLD = 0.3;
+const RIDE_STEP_S = 1; // a page that was hidden does not leap
 const BELOW_FLOOR_M = 0.13; // the map lies under the meshes' own floor, else the two would flicker
 
 export interface WalkState {
@@ -43,6 +44,7 @@ export class Walkthrough {
   private chosen: readonly MappedView[] = [];
   private chosenFor: Walker | null = null;
   private ride = { on: false, seconds: 0, times: [] as number[] };
+  private rodeAt = 0; // ms
   private active = false;
   private timer = 0;
   private readonly shelf: MeshShelf<DrawableView>;
@@ -96,13 +98,14 @@ export class Walkthrough {
   /** Starts or stops the ride; at the end it starts over. */
   toggleRide(): void {
     const end = this.ride.times.at(-1) ?? 0;
+    this.rodeAt = performance.now();
     this.rideTo(this.ride.seconds >= end - 0.05 ? 0 : this.ride.seconds, !this.ride.on);
   }
 
   /** One picture's worth of time; true while there is more to come. */
   frame(seconds: number, aspect: number): boolean {
     if (isMoving(this.wish)) this.ride.on = false;
-    if (this.ride.on) this.advanceRide(seconds);
+    if (this.ride.on) this.advanceRide();
     else if (isMoving(this.wish)) this.walker = step(this.walker, this.wish, seconds, this.flies, this.ground);
     this.aim(aspect);
     this.choose();
@@ -115,8 +118,12 @@ export class Walkthrough {
     return p.z > 1 ? null : { x: ((p.x + 1) / 2) * width, y: ((1 - p.y) / 2) * height };
   }
 
-  private advanceRide(seconds: number): void {
+  /** As fast as it was recorded, however seldom pictures are drawn. */
+  private advanceRide(): void {
     const end = this.ride.times.at(-1) ?? 0;
+    const now = performance.now();
+    const seconds = Math.min(RIDE_STEP_S, (now - this.rodeAt) / 1000);
+    this.rodeAt = now;
     this.ride.seconds = Math.min(end, this.ride.seconds + seconds);
     this.walker = rideAt(this.live.path, this.ride.times, this.ride.seconds) ?? this.walker;
     if (this.ride.seconds >= end) this.ride.on = false;
