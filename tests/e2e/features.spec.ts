@@ -57,6 +57,31 @@ test('layers stand at their height, spread apart, and are cut', async ({ page })
   expect(await changed(page, () => setSlider(page, 'Cut above', 0.4))).toBeGreaterThan(0.01);
 });
 
+test('a layer that is pointed at in the list stands out, and a link brings back how layers were looked at', async ({ page }) => {
+  await open(page, `${program.url}/?fresh`);
+  await page.locator('.map > canvas').focus();
+  await page.keyboard.press('v');
+  await setSlider(page, 'Spread layers', 0.8);
+  expect(await changed(page, () => page.locator('.layers li').first().hover())).toBeGreaterThan(0.01);
+  await page.mouse.move(500, 20);
+  const box = await page.locator('.map > canvas').boundingBox();
+  const there = async (): Promise<{ x: number; y: number }> => page.evaluate(() => (window as never as { __flog: { project(...at: number[]): { x: number; y: number } } }).__flog.project(0, 0, 1));
+  await page.mouse.move((box?.x ?? 0) + 200, (box?.y ?? 0) + 300);
+  await page.mouse.down({ button: 'right' });
+  await page.mouse.move((box?.x ?? 0) + 240, (box?.y ?? 0) + 220, { steps: 4 }); // turns and tilts
+  await page.mouse.up({ button: 'right' });
+  await settled(page);
+  const before = await there();
+  await page.getByRole('button', { name: /link/i }).first().click();
+  await expect(page).toHaveURL(/&d=1&a=[\d.]+,0\.8,/);
+  const link = page.url();
+  await page.goto('about:blank');
+  await open(page, link);
+  await settled(page);
+  const after = await there();
+  expect(Math.hypot(after.x - before.x, after.y - before.y)).toBeLessThan(2);
+});
+
 test('the path changes its colours, and can be left out', async ({ page }) => {
   await open(page, `${program.url}/?fresh`);
   expect(await changed(page, () => page.locator('input[value="state"]').check({ force: true }))).toBeGreaterThan(0);
@@ -77,6 +102,7 @@ test('several cells are pinned, and one is copied as JSON', async ({ page, conte
     await page.locator('.map > canvas').click({ position });
     await page.keyboard.press('p');
   }
+  await expect(page.locator('.cell-tile')).toHaveText(/^Tile 0\/-?\d+\/-?\d+, last changed in revision \d+$/);
   await expect(page.locator('.pin-row')).toHaveCount(2);
   await expect(page.locator('.pin-mark')).toHaveCount(2);
   await page.getByRole('button', { name: 'Copy as JSON' }).click();
@@ -203,6 +229,12 @@ test('right picture, size, corners and depth under the cursor', async ({ page })
   await page.getByRole('switch', { name: 'Right picture' }).click();
   const width = (title: string): Promise<number> => page.locator(`canvas[aria-label^="${title}"]`).evaluate((canvas: HTMLCanvasElement) => canvas.width);
   await expect.poll(() => width('Right')).toBeGreaterThan(100);
+  await page.getByRole('switch', { name: 'Rows of the pair' }).click();
+  for (const title of ['Left', 'Right']) // yellow at the same heights in both
+    await expect.poll(() => page.locator(`canvas[aria-label^="${title}"]`).evaluate((canvas: HTMLCanvasElement) => {
+      const [r = 0, , b = 0] = canvas.getContext('2d')?.getImageData(10, Math.round(canvas.height / 2), 1, 1).data ?? [];
+      return r - b;
+    })).toBeGreaterThan(60);
   await page.locator('input[value="240"]').check({ force: true });
   await expect.poll(() => width('Left')).toBe(240);
   await expect(page.locator('.picture-age').first()).toHaveText(/t = /);

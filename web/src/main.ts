@@ -66,7 +66,7 @@ const walk = new Walkthrough(live, backend, budget / 2, () => view.requestDraw()
 const page: Page = { live, settings, focus, view, walk, connection, backend };
 
 function share(): void {
-  const hash = linkHash({ epoch: live.info?.epoch ?? '', rev: live.rev, view: view.viewport, cell: focus.get().cell, settings: settings.get(), layers: live.info?.layers.map(({ id }) => id) ?? [] });
+  const hash = linkHash({ epoch: live.info?.epoch ?? '', rev: live.rev, view: view.viewport, cell: focus.get().cell, pitch: view.eye.pitch, settings: settings.get(), layers: live.info?.layers.map(({ id }) => id) ?? [] });
   history.replaceState(null, '', location.pathname + location.search + hash);
   navigator.clipboard.writeText(location.href).then(
     () => live.noticed.emit({ tone: 'info', text: 'Link copied: it opens this view, these layers and this cell.' }),
@@ -120,6 +120,7 @@ live.begun.on((info) => {
   if (linked.epoch && linked.epoch !== info.epoch) live.noticed.emit({ tone: 'warning', text: 'The link was made on another map: this one has begun anew since.' });
   else if (linked.rev !== undefined && linked.rev < info.rev) live.noticed.emit({ tone: 'info', text: `The map has moved on by ${info.rev - linked.rev} changes since the link was made.` });
 });
+if (linked.pitch !== undefined) view.eye.tiltTo(linked.pitch);
 if (linked.view) view.restore(linked.view.x, linked.view.y, linked.view.scale, linked.view.turn);
 
 installTestHook(page);

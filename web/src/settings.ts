@@ -34,6 +34,7 @@ export interface Settings {
   readonly robotRadius: number; // metres
   readonly robotHeight: number; // metres; 0: every layer must be free
   readonly showRight: boolean; // the right picture too
+  readonly showRows: boolean; // lines along which left and right are compared
   readonly imageWidth: number; // pixels, at most
   readonly leftPanel: boolean;
   readonly rightPanel: boolean;
@@ -44,7 +45,7 @@ export interface Settings {
 export const DEFAULTS: Settings = {
   theme: 'auto', palette: 'cividis', style: 'visual', operators: 'algebraic', threshold: DEFAULT_THRESHOLD, classes: false,
   colourByHeight: false, markConflict: true, showGrid: true, showPath: true, pathBy: 'time', follow: 'free', solid: false, spread: 0,
-  clipHeight: 10, showFeatures: true, imageFps: 5, robotRadius: 0.25, robotHeight: 0, showRight: false, imageWidth: 480, leftPanel: true, rightPanel: true, layers: {},
+  clipHeight: 10, showFeatures: true, imageFps: 5, robotRadius: 0.25, robotHeight: 0, showRight: false, showRows: false, imageWidth: 480, leftPanel: true, rightPanel: true, layers: {},
 };
 
 const LAYER: LayerSetting = { visible: true, opacity: 1 };

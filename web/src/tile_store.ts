@@ -125,6 +125,9 @@ export function locate(x: number, y: number, level: number, cellSize: number): {
   return { key, column: (j - key.y * TILE_SIDE) * TILE_SIDE + (i - key.x * TILE_SIDE) };
 }
 
+/** The tile of the finest level that holds a world point. */
+export const tileAt = (store: TileStore, x: number, y: number, cellSize: number): Tile | undefined => store.get(locate(x, y, 0, cellSize).key);
+
 /** E, O, K, C in [0, 1] of every layer at a world point; undefined where no tile is held. */
 export function columnAt(store: TileStore, x: number, y: number, cellSize: number): { E: number; O: number; K: number; C: number }[] | undefined {
   const { key, column } = locate(x, y, 0, cellSize);

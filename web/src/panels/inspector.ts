@@ -3,7 +3,7 @@
 import type { CellEvidence, Layer } from '../gen/flogmap/v1/map_pb';
 import type { Page } from '../page';
 import { conflictValue, mapValue, motionValue, planningValue, styleValue, type Evidence, type Operators } from '../rules';
-import { columnAt } from '../tile_store';
+import { columnAt, keyText, tileAt } from '../tile_store';
 import { h, setText } from '../ui/dom';
 import { iconButton, section } from '../ui/controls';
 import { layerName } from './layers';
@@ -67,7 +67,9 @@ function bodyRows(page: Page, cell: Point | undefined): HTMLElement[] {
   if (!cell) return [h('p', { class: 'empty' }, 'Point at the map to read a cell, click to hold it.')];
   const evidence = evidenceAt(page, cell);
   if (!evidence) return [h('p', { class: 'empty' }, 'Never seen: no ray has come near this place.')];
-  return [...evidence].reverse().map((layer) => layerBlock(page.settings.get().operators, layer));
+  const tile = tileAt(page.live.tiles, cell.x, cell.y, page.live.info?.cellSize ?? 1);
+  const about = tile ? [h('p', { class: 'hint cell-tile' }, `Tile ${keyText(tile)}, last changed in revision ${tile.rev}`)] : [];
+  return [...[...evidence].reverse().map((layer) => layerBlock(page.settings.get().operators, layer)), ...about];
 }
 
 function layerBlock(operators: Operators, e: LayerEvidence): HTMLElement {

@@ -36,6 +36,11 @@ function layerRow(page: Page, layer: Layer, index: number, count: number): { row
   const row = h('li', { class: 'layer' },
     h('div', { class: 'layer-head' }, dot, h('span', { class: 'layer-name' }, name, h('kbd', {}, String(index + 1))), solo, eye),
     h('div', { class: 'layer-foot' }, h('span', { class: 'layer-range' }, `${formatHeight(layer.zMin)} – ${formatHeight(layer.zMax)}`), opacity.element));
+  for (const [event, pointed] of [['pointerenter', true], ['focusin', true], ['pointerleave', false], ['focusout', false]] as const)
+    row.addEventListener(event, () => {
+      page.view.tiles.pointAt(pointed ? index : -1);
+      page.view.requestDraw();
+    });
   const stop = settings.watch(['layers'], (now) => {
     const { visible, opacity: value } = layerSetting(now, layer.id);
     row.classList.toggle('off', !visible);

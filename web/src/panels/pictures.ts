@@ -10,6 +10,8 @@ import { section, segmented, slider, toggle } from '../ui/controls';
 
 const INLIER = '#3ddc97';
 const OUTLIER = '#ff5d6c';
+const ROWS = 16;
+const ROW_COLOUR = 'rgb(255 210 63 / 0.75)';
 const STALE_AFTER_MS = 3000;
 const LIGHT_EVERY_MS = 1000;
 
@@ -21,17 +23,20 @@ export function picturesPanel(page: Page): HTMLElement {
   const features = toggle('Tracked corners', (showFeatures) => page.settings.set({ showFeatures }), 'Corners that agree on the motion, and those that do not');
   const rate = slider('Pictures a second', { min: 0, max: 15, step: 1 }, (value) => (value === 0 ? 'off' : `${value}`), (imageFps) => page.settings.set({ imageFps }));
   const both = toggle('Right picture', (showRight) => page.settings.set({ showRight }));
+  const rows = toggle('Rows of the pair', (showRows) => page.settings.set({ showRows }), 'Lines at equal heights in both pictures: what one line goes through on the left it must go through on the right');
   const size = segmented<string>('Width of the pictures', [['240', 'Small'], ['480', 'Middle'], ['960', 'Large']], (value) => page.settings.set({ imageWidth: Number(value) }));
-  page.settings.watch(['showFeatures', 'imageFps', 'showRight', 'imageWidth'], (now) => {
+  page.settings.watch(['showFeatures', 'imageFps', 'showRight', 'showRows', 'imageWidth'], (now) => {
+    rows.show(now.showRows);
     both.show(now.showRight);
     right.element.hidden = !now.showRight;
     size.show(String(now.imageWidth));
     features.show(now.showFeatures);
     rate.show(now.imageFps);
     left.redraw();
+    right.redraw();
   });
   page.live.featuresChanged.on(() => left.redraw());
-  return section('Camera', 'camera', left.element, right.element, disparity.element, scale, features.element, both.element, rate.element, size.element);
+  return section('Camera', 'camera', left.element, right.element, disparity.element, scale, features.element, both.element, rows.element, rate.element, size.element);
 }
 
 interface Picture {
@@ -119,7 +124,15 @@ function paint(page: Page, canvas: HTMLCanvasElement, bitmap: ImageBitmap, strea
   context.drawImage(bitmap, 0, 0);
   const image = page.live.images.get(stream);
   if (stream === ImageStream.LEFT && page.settings.get().showFeatures && image) paintFeatures(page, context, image);
+  if (stream !== ImageStream.DISPARITY && page.settings.get().showRows) paintRows(context);
   if (stream === ImageStream.LEFT) paintFloor(page, context);
+}
+
+/** The pair is rectified: a point of the scene lies in the same row of both pictures. */
+function paintRows(context: CanvasRenderingContext2D): void {
+  const { width, height } = context.canvas;
+  context.fillStyle = ROW_COLOUR;
+  for (let row = 1; row < ROWS; ++row) context.fillRect(0, Math.round((row * height) / ROWS), width, Math.max(1, Math.round(height / 400)));
 }
 
 function paintFeatures(page: Page, context: CanvasRenderingContext2D, image: ImageEvent): void {

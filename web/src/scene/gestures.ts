@@ -2,7 +2,6 @@
 
 import { turnAt, zoomAt, type Point } from '../viewport';
 import type { MapView } from './map_view';
-import { MAX_PITCH } from './view_camera';
 
 const CLICK_SLOP_PX = 5;
 const WHEEL_ZOOM = 0.0016;
@@ -71,7 +70,7 @@ export class Gestures {
 
   private turn(dx: number, dy: number): void {
     const { viewport, eye } = this.view;
-    if (eye.solid) eye.pitch = Math.min(MAX_PITCH, Math.max(0, eye.pitch - dy * 0.006));
+    if (eye.solid) eye.tiltTo(eye.pitch - dy * 0.006);
     const middle = { x: viewport.width / 2, y: viewport.height / 2 };
     this.view.moveTo(turnAt(viewport, dx * 0.006, middle));
   }

@@ -22,7 +22,7 @@ export function mapUniforms(): MapUniforms {
     uThreshold: { value: 0.3 }, uConflictMark: { value: CONFLICT_MARK }, uByHeight: { value: false }, uRamp: { value: ramp },
     uWeights: { value: floats() }, uSeenFrom: { value: floats() }, uLayerColours: { value: Array.from({ length: MAX_LAYERS }, () => new Color()) },
     uUnknown: { value: new Color() }, uFree: { value: new Color() }, uOccupied: { value: new Color() }, uConflict: { value: new Color() },
-    uHatch: { value: new Color() }, uPixelRatio: { value: 1 }, uQuiet: { value: 0 },
+    uHatch: { value: new Color() }, uPixelRatio: { value: 1 }, uQuiet: { value: 0 }, uPointedAt: { value: -1 },
   };
 }
 

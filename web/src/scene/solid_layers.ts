@@ -31,6 +31,7 @@ void main() {
 const FRAGMENT = /* glsl */ `
 precision highp float;
 uniform sampler2D uRamp; uniform bool uByHeight; uniform vec3 uLayerColours[${MAX_LAYERS}]; uniform float uWeights[${MAX_LAYERS}];
+uniform int uPointedAt; uniform vec3 uFree;  // -1: no layer is pointed at
 flat in vec4 vAbout; in float vUp;
 out vec4 colour;
 void main() {
@@ -39,6 +40,7 @@ void main() {
   vec3 base = uByHeight ? uLayerColours[layer] : texelFetch(uRamp, ivec2(int(clamp(vAbout.y, 0.0, 1.0) * 255.0), 0), 0).rgb;
   float fade = step(fract((gl_FragCoord.x + 2.0 * gl_FragCoord.y) * 0.37), uWeights[layer]);
   if (fade < 0.5) discard;  // opacity by dots: needs no sorting
+  if (uPointedAt >= 0 && layer != uPointedAt) base = mix(base, uFree, 0.85);
   colour = vec4(base * vAbout.z * mix(0.72, 1.0, vUp), 1.0);
 }`;
 

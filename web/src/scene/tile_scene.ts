@@ -7,7 +7,7 @@ import type { Settings } from '../settings';
 import { tilesToDraw } from '../tile_choice';
 import { keyText, type Tile, type TileKey } from '../tile_store';
 import { levelFor, visibleRect, type Rect, type Viewport } from '../viewport';
-import type { MapUniforms, TileRules } from './map_material';
+import { setUniform, type MapUniforms, type TileRules } from './map_material';
 import type { Picture } from './picture';
 import { layerHeights, SolidLayers } from './solid_layers';
 import { TileMeshes } from './tile_meshes';
@@ -56,6 +56,11 @@ export class TileScene {
   setRules(rules: TileRules): void {
     this.rules = rules;
     for (const meshes of [this.flat, ...this.floors]) meshes?.setRules(rules);
+  }
+
+  /** Lets one layer, by its place in the map's list, stand out among those at their height; -1: none. */
+  pointAt(layer: number): void {
+    setUniform(this.uniforms, 'uPointedAt', layer);
   }
 
   get textureBytes(): number {

@@ -5,7 +5,7 @@ import type { Point, Viewport } from '../viewport';
 import { screenFromWorld, worldFromScreen } from '../viewport';
 
 const FIELD_OF_VIEW = 35; // degrees, vertical
-export const MAX_PITCH = (82 * Math.PI) / 180;
+const MAX_PITCH = (82 * Math.PI) / 180;
 
 export class ViewCamera {
   pitch = 0.95; // of the solid view, from the vertical, radians
@@ -17,6 +17,10 @@ export class ViewCamera {
 
   get camera(): Camera {
     return this.solid ? this.deep : this.flat;
+  }
+
+  tiltTo(pitch: number): void {
+    this.pitch = Math.min(MAX_PITCH, Math.max(0, pitch));
   }
 
   update(view: Viewport): void {
