@@ -33,23 +33,23 @@ class GroundSearch {
 
   [[nodiscard]] std::optional<GroundPlane> best() const {
     std::vector<GroundPlane> planes;
-    const GroundPlane* surest = nullptr;  // has most pieces: it tells best which way is up
     for (const SurfacePatch* seed : seeds()) {
       const auto plane = grow(seed->normal, seed->centre);
       if (plane && plane->num_patches >= kLeastShare * static_cast<double>(level_.size()))
         planes.push_back(*plane);
     }
-    for (const GroundPlane& plane : planes) {
-      if (!surest || plane.num_patches > surest->num_patches) surest = &plane;
-    }
-    const GroundPlane* lowest = surest;
+    if (planes.empty()) return std::nullopt;
+    // The one with most pieces tells best which way is up.
+    const GroundPlane& surest = *std::max_element(
+        planes.begin(), planes.end(),
+        [](const GroundPlane& a, const GroundPlane& b) { return a.num_patches < b.num_patches; });
+    const GroundPlane* lowest = &surest;
     for (const GroundPlane& plane : planes) {
       // By area: a table close by fills more of the picture than the floor behind it.
-      const bool large = plane.area_m2 >= kNearlyAsLarge * surest->area_m2;
-      const bool parallel = within(plane.up, surest->up, kParallel_rad);
+      const bool large = plane.area_m2 >= kNearlyAsLarge * surest.area_m2;
+      const bool parallel = within(plane.up, surest.up, kParallel_rad);
       if (large && parallel && plane.height_m > lowest->height_m + options_.slab_m) lowest = &plane;
     }
-    if (!lowest) return std::nullopt;
     const auto below = floor_below(*lowest);
     return below ? below : *lowest;
   }

@@ -211,7 +211,7 @@ std::optional<SE3> align_points(const std::vector<PointPair>& pairs, const std::
     W += weights[i] / sum * (pairs[i].in_current - current_mean) * (pairs[i].in_key - key_mean).transpose();
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(W, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d spread = svd.singularValues();
+  const Eigen::Vector3d& spread = svd.singularValues();
   if (!(spread(1) > 1e-6 * spread(0))) return std::nullopt;  // on a line: the turn about it is free
   const double handedness = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   SE3 current_from_key = SE3::Identity();
