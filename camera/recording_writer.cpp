@@ -106,7 +106,9 @@ void write_pfm(const fs::path& file, const Image<float>& image) {
 }
 
 RecordingWriter::RecordingWriter(fs::path folder, const StereoCalibration& calibration, Options options)
-    : folder_(std::move(folder)), left_from_body_(calibration.body_from_left.inverse()), options_(options) {
+    : folder_(std::move(folder)),
+      left_from_body_(calibration.body_from_left.inverse()),
+      options_(std::move(options)) {
   const fs::path cam0 = folder_ / "mav0" / "cam0", cam1 = folder_ / "mav0" / "cam1";
   if (fs::exists(cam0 / "data.csv")) {
     throw std::runtime_error(folder_.string() + ": there is a recording already; choose another folder");
