@@ -13,6 +13,7 @@ export function layersPanel(page: Page): HTMLElement {
   let stops: (() => void)[] = [];
   const rebuild = (): void => {
     for (const stop of stops) stop();
+    page.view.tiles.pointAt(-1); // the row that was pointed at is gone
     const layers = page.live.info?.layers ?? [];
     const built = layers.map((layer, i) => layerRow(page, layer, i, layers.length));
     stops = built.map(({ stop }) => stop);
