@@ -27,6 +27,12 @@ describe('a path', () => {
     expect([path.length, path.at(-1)?.pose?.x]).toEqual([2, 7]);
   });
 
+  it('knows where its newest minutes begin', () => {
+    const path = pathOf(Array.from({ length: 200 }, (_, i) => point(i, i)));
+    expect([0, 1, 2, 10].map((minutes) => path.firstOfLast(minutes))).toEqual([0, 139, 79, 0]);
+    expect(new Path().firstOfLast(1)).toBe(0);
+  });
+
   it('takes 3 MiB an hour', () => {
     expect(rounds(72, 1000).bytes).toBeLessThan(4.5 * 2 ** 20); // with room to grow
   });
@@ -53,6 +59,17 @@ describe('what is drawn of a path', () => {
     const corners = drawnPath(pathOf([point(0, 0), point(1, 1), gap(2), point(3, 3), point(4, 4)]), 0.1);
     expect(Array.from({ length: corners.length / CORNER }, (_, i) => [corners[CORNER * i], corners[CORNER * i + 3]])).toEqual([[0, 0], [1, 1], [3, 3], [4, 4]]);
     expect([4, 9, 14].map((k) => (corners[k] ?? 0) >= 0)).toEqual([true, false, true]);
+  });
+
+  it('may begin later, as if there had been nothing before', () => {
+    const points = [...Array.from({ length: 300 }, (_, i) => point(i / 20, i / 50, Math.sin(i / 30), { mapped: i % 5 === 0 })), gap(15), point(16, 6), point(17, 7)];
+    for (const first of [0, 1, 77, 150, 299, 300, 301, 302, 303]) {
+      const path = pathOf(points);
+      const later = pathOf(points.slice(first));
+      const places = (corners: Float32Array): number[] => [...corners].filter((_, k) => k % CORNER !== 3); // seconds count from the first point
+      expect(places(drawnPath(path, 0.05, first))).toEqual(places(drawnPath(later, 0.05)));
+      expect([...drawnViews(path, 0.2, first)]).toEqual([...drawnViews(later, 0.2)]);
+    }
   });
 
   it('keeps a change of tracking state', () => {

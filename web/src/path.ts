@@ -69,6 +69,19 @@ export class Path implements PathPoints<PathPoint> {
     return Number((this.times[i] ?? 0n) - (this.times[0] ?? 0n)) / 1e9;
   }
 
+  /** The first point of the newest `minutes`; 0 minutes stand for the whole path. */
+  firstOfLast(minutes: number): number {
+    if (minutes === 0) return 0;
+    const since = this.seconds(this.count - 1) - 60 * minutes;
+    let [first, end] = [0, this.count];
+    while (first < end) {
+      const middle = (first + end) >> 1;
+      if (this.seconds(middle) < since) first = middle + 1;
+      else end = middle;
+    }
+    return first;
+  }
+
   /** Puts points at `first` and after it; what was there is overwritten, what came after it is dropped. */
   put(first: number, points: readonly TrajectoryPoint[]): void {
     this.count = first;

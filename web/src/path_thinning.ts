@@ -8,23 +8,23 @@ export const CORNER = 5;
 const MAX_CORNERS = 8192;
 const NEAREST_M = 0.01;
 
-/** Corners of the line, oldest first, at least about `spacing` metres apart. */
-export function drawnPath(path: Path, spacing: number): Float32Array {
+/** Corners of the line from point `first` on, oldest first, at least about `spacing` metres apart. */
+export function drawnPath(path: Path, spacing: number, first = 0): Float32Array {
   for (let apart = Math.max(NEAREST_M, spacing); ; apart *= 2) {
-    const corners = cornersOf(path, apart);
+    const corners = cornersOf(path, apart, first);
     if (corners) return corners;
   }
 }
 
 /** Undefined if there are too many. */
-function cornersOf(path: Path, spacing: number): Float32Array | undefined {
+function cornersOf(path: Path, spacing: number, first: number): Float32Array | undefined {
   const covered = new Covered(spacing);
   const found: number[] = []; // newest first
   const put = (i: number, state: number): unknown => found.push(path.place(i, 0), path.place(i, 1), path.place(i, 2), path.seconds(i), state);
   let next = -1; // the corner that the line leads to
   let nextIsThere = false;
-  for (let i = path.length - 1; i >= 0; --i) {
-    if (next >= 0 && path.hasPose(i) && canSkip(path, i, next, spacing)) continue;
+  for (let i = path.length - 1; i >= first; --i) {
+    if (next >= 0 && path.hasPose(i) && i > first && canSkip(path, i, next, spacing)) continue;
     const drawn = next >= 0 && path.hasPose(i) && covered.add(path, i, next);
     if (drawn && !nextIsThere) put(next, -1);
     if (drawn) put(i, path.state(i));
@@ -37,7 +37,7 @@ function cornersOf(path: Path, spacing: number): Float32Array | undefined {
 
 /** Nothing ends or changes at i, and it is close to the next corner. */
 const canSkip = (path: Path, i: number, next: number, spacing: number): boolean =>
-  i > 0 && path.hasPose(i - 1) && path.state(i) === path.state(next) && distance(path, i, next) < spacing;
+  path.hasPose(i - 1) && path.state(i) === path.state(next) && distance(path, i, next) < spacing;
 
 function reversed(corners: readonly number[]): Float32Array {
   const turned = new Float32Array(corners.length);
@@ -68,11 +68,11 @@ class Covered {
   }
 }
 
-/** Places of mapped views, x, y, z each, at least `spacing` metres from one another along the path and where they were before. */
-export function drawnViews(path: Path, spacing: number): Float32Array {
+/** Places of mapped views from point `first` on, x, y, z each, at least `spacing` metres from one another along the path and where they were before. */
+export function drawnViews(path: Path, spacing: number, first = 0): Float32Array {
   const taken = new Set<string>();
   const places: number[] = [];
-  for (let i = path.length - 1; i >= 0; --i) {
+  for (let i = path.length - 1; i >= first; --i) {
     if (!path.mapped(i) || !path.hasPose(i)) continue;
     const [x, y, z] = [path.place(i, 0), path.place(i, 1), path.place(i, 2)];
     const cell = `${Math.round(x / spacing)} ${Math.round(y / spacing)} ${Math.round(z / spacing)}`;

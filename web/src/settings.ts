@@ -5,6 +5,8 @@ import { DEFAULT_THRESHOLD, OPERATORS, STYLES, type Operators, type Style } from
 import { Store } from './signal';
 
 export type Follow = 'free' | 'north' | 'heading';
+export const PATH_MINUTES = [0, 1, 10] as const;
+export type PathMinutes = (typeof PATH_MINUTES)[number];
 export type ThemeChoice = 'auto' | Theme;
 
 export interface LayerSetting {
@@ -25,6 +27,7 @@ export interface Settings {
   readonly showGrid: boolean;
   readonly showPath: boolean;
   readonly pathBy: 'time' | 'state';
+  readonly pathMinutes: PathMinutes; // the newest of the path; 0: all of it
   readonly follow: Follow;
   readonly solid: boolean; // layers at their height instead of flat
   readonly spread: number; // metres between layers in the solid view
@@ -44,7 +47,7 @@ export interface Settings {
 
 export const DEFAULTS: Settings = {
   theme: 'auto', palette: 'cividis', style: 'visual', operators: 'algebraic', threshold: DEFAULT_THRESHOLD, classes: false,
-  colourByHeight: false, markConflict: true, showGrid: true, showPath: true, pathBy: 'time', follow: 'free', solid: false, spread: 0,
+  colourByHeight: false, markConflict: true, showGrid: true, showPath: true, pathBy: 'time', pathMinutes: 0, follow: 'free', solid: false, spread: 0,
   clipHeight: 10, showFeatures: true, imageFps: 5, robotRadius: 0.25, robotHeight: 0, showRight: false, showRows: false, imageWidth: 480, leftPanel: true, rightPanel: true, layers: {},
 };
 
@@ -79,6 +82,7 @@ function checked(s: Settings): Settings {
     style: oneOf(s.style, STYLES, DEFAULTS.style),
     operators: oneOf(s.operators, OPERATORS, DEFAULTS.operators),
     pathBy: oneOf(s.pathBy, ['time', 'state'], DEFAULTS.pathBy),
+    pathMinutes: oneOf(s.pathMinutes, PATH_MINUTES, DEFAULTS.pathMinutes),
     follow: oneOf(s.follow, ['free', 'north', 'heading'], DEFAULTS.follow),
     threshold: Math.min(1, Math.max(0.02, s.threshold)),
   };

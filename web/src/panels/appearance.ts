@@ -3,6 +3,7 @@
 import { cssColour, PALETTE_TITLES, PALETTES, rampColour } from '../palette';
 import type { Page } from '../page';
 import type { Operators, Style } from '../rules';
+import { PATH_MINUTES } from '../settings';
 import { h, setText } from '../ui/dom';
 import { section, segmented, select, slider, toggle } from '../ui/controls';
 
@@ -41,7 +42,8 @@ export function appearancePanel({ settings }: Page): HTMLElement {
     ['showPath', toggle('Path', (showPath) => settings.set({ showPath }))],
   ] as const;
   const pathBy = segmented<'time' | 'state'>('Colour of the path', [['time', 'By time'], ['state', 'By tracking']], (value) => settings.set({ pathBy: value }));
-  settings.watch(['style', 'operators', 'threshold', 'palette', 'classes', 'colourByHeight', 'markConflict', 'showGrid', 'showPath', 'pathBy', 'solid', 'spread', 'clipHeight'], (now) => {
+  const pathMinutes = segmented<string>('Length of the path', PATH_MINUTES.map((minutes) => [String(minutes), minutes === 0 ? 'All' : `Last ${minutes} min`]), (value) => settings.set({ pathMinutes: PATH_MINUTES.find((minutes) => String(minutes) === value) ?? 0 }));
+  settings.watch(['style', 'operators', 'threshold', 'palette', 'classes', 'colourByHeight', 'markConflict', 'showGrid', 'showPath', 'pathBy', 'pathMinutes', 'solid', 'spread', 'clipHeight'], (now) => {
     spread.show(now.spread);
     clip.show(now.clipHeight);
     spread.element.hidden = clip.element.hidden = !now.solid;
@@ -52,9 +54,10 @@ export function appearancePanel({ settings }: Page): HTMLElement {
     palette.show(now.palette);
     for (const [key, control] of switches) control.show(now[key]);
     pathBy.show(now.pathBy);
-    pathBy.element.hidden = !now.showPath;
+    pathMinutes.show(String(now.pathMinutes));
+    pathBy.element.hidden = pathMinutes.element.hidden = !now.showPath;
   });
-  return section('Map', 'map', style.element, words, operators.element, threshold.element, spread.element, clip.element, palette.element, ...switches.map(([, control]) => control.element), pathBy.element);
+  return section('Map', 'map', style.element, words, operators.element, threshold.element, spread.element, clip.element, palette.element, ...switches.map(([, control]) => control.element), pathBy.element, pathMinutes.element);
 }
 
 function paletteChoice(choose: (name: (typeof PALETTES)[number]) => void): { element: HTMLElement; show(name: string): void } {

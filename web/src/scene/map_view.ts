@@ -273,7 +273,7 @@ export class MapView {
     const brought = !this.stale.tiles || !info || this.tiles.show(this.viewport, info, settings);
     if (!brought) this.requestDraw();
     const pathDue = this.stale.settings || performance.now() >= this.path.restsUntil();
-    if (this.stale.path && pathDue && !this.held) this.path.update(settings.showPath ? this.live.path : undefined, settings.pathBy);
+    if (this.stale.path && pathDue && !this.held) this.path.update(settings.showPath ? this.live.path : undefined, settings.pathBy, settings.pathMinutes);
     const pathLater = this.stale.path && !pathDue;
     this.path.setScale(this.viewport.scale);
     this.stale = { tiles: !brought, path: pathLater, settings: false };

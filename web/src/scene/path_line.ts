@@ -21,9 +21,9 @@ const DOT_M = 0.02; // nothing is drawn closer together
 // A straight piece is a rectangle around it; what is further from the piece than half its width is not painted: round ends.
 const VERTEX = /* glsl */ `
 in vec4 start; in float state; in vec4 end;  // x, y, z, seconds
-uniform vec2 uScreen; uniform float uHalf; uniform float uSeconds; uniform bool uByState; uniform vec3 uStates[8]; uniform vec3 uOld; uniform vec3 uNew;
+uniform vec2 uScreen; uniform float uHalf; uniform float uFrom; uniform float uSeconds; uniform bool uByState; uniform vec3 uStates[8]; uniform vec3 uOld; uniform vec3 uNew;
 out vec2 vFrom; flat out vec2 vAlong; out vec3 vInk;
-vec3 ink(float seconds) { return uByState ? uStates[int(state)] : mix(uOld, uNew, clamp(seconds / uSeconds, 0.0, 1.0)); }
+vec3 ink(float seconds) { return uByState ? uStates[int(state)] : mix(uOld, uNew, clamp((seconds - uFrom) / uSeconds, 0.0, 1.0)); }
 void main() {
   const float NEAR = 0.02;
   vec4 a = projectionMatrix * modelViewMatrix * vec4(start.xyz, 1.0);
@@ -61,11 +61,12 @@ const srgb = (colour: Color): Color => new Color().copyLinearToSRGB(colour); // 
 export class PathLine {
   readonly group = new Group();
   private path: Path | undefined;
+  private first = 0; // point of the path that the line begins at
   private scale = 0; // CSS pixels per metre that the corners were chosen for
   private cost = 0; // ms, of the last update
   private drawnAt = 0;
   private readonly uniforms = {
-    uScreen: { value: new Vector2(1, 1) }, uSeconds: { value: 1 }, uByState: { value: false }, uOld: { value: srgb(OLD) }, uNew: { value: srgb(NEW) },
+    uScreen: { value: new Vector2(1, 1) }, uFrom: { value: 0 }, uSeconds: { value: 1 }, uByState: { value: false }, uOld: { value: srgb(OLD) }, uNew: { value: srgb(NEW) },
     uStates: { value: Array.from({ length: 8 }, (_, state) => srgb(STATE_COLOURS[state as TrackingState] ?? NEW)) },
   };
   private readonly lines: [Line, Line] = [this.line(2.25, [0.07, 0.08, 0.1, 1]), this.line(1.25, [0, 0, 0, 0])];
@@ -81,12 +82,14 @@ export class PathLine {
     this.group.add(...this.lines, this.dots);
   }
 
-  /** Undefined: no path is to be seen. */
-  update(path: Path | undefined, by: 'time' | 'state'): void {
+  /** The newest `minutes` of the path (0: all). Undefined: no path is to be seen. */
+  update(path: Path | undefined, by: 'time' | 'state', minutes: number): void {
     const start = performance.now();
     this.path = path;
     this.uniforms.uByState.value = by === 'state';
-    this.uniforms.uSeconds.value = Math.max(1e-3, path?.seconds(path.length - 1) ?? 0);
+    this.first = path?.firstOfLast(minutes) ?? 0;
+    this.uniforms.uFrom.value = path?.seconds(this.first) ?? 0;
+    this.uniforms.uSeconds.value = Math.max(1e-3, (path?.seconds(path.length - 1) ?? 0) - this.uniforms.uFrom.value);
     this.choose();
     this.cost = performance.now() - start;
     this.drawnAt = start;
@@ -116,7 +119,7 @@ export class PathLine {
   }
 
   private choose(): void {
-    const corners = this.path && this.scale > 0 ? drawnPath(this.path, CORNERS_APART_PX / this.scale) : new Float32Array(0);
+    const corners = this.path && this.scale > 0 ? drawnPath(this.path, CORNERS_APART_PX / this.scale, this.first) : new Float32Array(0);
     this.group.visible = corners.length > CORNER;
     if (!this.group.visible || !this.path) return;
     const buffer = new InstancedInterleavedBuffer(corners, CORNER);
@@ -129,6 +132,6 @@ export class PathLine {
     }
     this.dots.geometry.dispose();
     this.dots.geometry = new BufferGeometry();
-    this.dots.geometry.setAttribute('position', new BufferAttribute(drawnViews(this.path, Math.max(DOT_M, DOTS_APART_PX / this.scale)), 3));
+    this.dots.geometry.setAttribute('position', new BufferAttribute(drawnViews(this.path, Math.max(DOT_M, DOTS_APART_PX / this.scale), this.first), 3));
   }
 }
