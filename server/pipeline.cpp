@@ -213,6 +213,8 @@ void Pipeline::report_status() {
   frames_at_status_ = report.frames;
   report.alignment = front_end_.alignment();
   if (!correction_.level().is_level()) report.alignment += ", then levelled by hand";
+  report.processor_celsius = heat_.read();
+  if (std::string hot = heat_.warning(); !hot.empty()) report.warnings.push_back(std::move(hot));
   observer_.status_changed(report);
 }
 

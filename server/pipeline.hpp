@@ -21,6 +21,7 @@
 #include "server/map_stage.hpp"
 #include "server/pipeline_observer.hpp"
 #include "server/pipeline_options.hpp"
+#include "server/processor_heat.hpp"
 #include "server/stage_statistics.hpp"
 
 namespace flogmap {
@@ -100,6 +101,7 @@ class Pipeline {
   std::uint64_t num_corrections_ = 0;
   std::chrono::steady_clock::time_point status_at_;
   std::uint64_t frames_at_status_ = 0;
+  ProcessorHeat heat_;
 
   mutable std::mutex counters_mutex_;
   StatusReport counters_;

@@ -6,7 +6,7 @@ flogmap_target(options SOURCES option_table.cpp options.cpp serving_options.cpp
                PUBLIC front_end flog camera log nlohmann_json::nlohmann_json PRIVATE CLI11::CLI11)
 
 flogmap_target(pipeline SOURCES capture_control.cpp loop_stage.cpp map_stage.cpp pipeline.cpp pipeline_capture.cpp
-                       random_epoch.cpp stage_statistics.cpp
+                       processor_heat.cpp random_epoch.cpp stage_statistics.cpp
                PUBLIC front_end map_builder loop flog camera Threads::Threads)
 
 flogmap_target(continued_map SOURCES commands/continued_map.cpp

@@ -68,6 +68,7 @@ struct StatusReport {
   std::vector<std::string> warnings;  // in words, with what to do
   std::string alignment;              // given, gravity, ground, none
   std::optional<PairSkew> skew;       // of sources that time both pictures
+  std::optional<double> processor_celsius;  // where the system tells it
 };
 
 /// A map begins: fresh, reset, or continued from a store.

@@ -94,6 +94,7 @@ std::string encode_status(const StatusReport& report, const ServingStatus& servi
   for (const std::string& warning : report.warnings) status.add_warnings(warning);
   status.set_viewers(serving.viewers);
   status.set_alignment(report.alignment);
+  if (report.processor_celsius) status.set_processor_celsius(*report.processor_celsius);
   if (report.skew && report.skew->histogram.total() > 0) {
     v1::PairSkew& skew = *status.mutable_pair_skew();
     skew.set_mean_ms(report.skew->histogram.mean_ms());

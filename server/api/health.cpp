@@ -65,6 +65,9 @@ void collect(ServerState& state) {
     metrics.set("flogmap_pairs_dropped", "Pairs taken further apart than allowed",
                 static_cast<double>(report.skew->num_dropped));
   }
+  if (report.processor_celsius) {
+    metrics.set("flogmap_processor_celsius", "Warmest sensor of the processor", *report.processor_celsius);
+  }
   for (const StageReport& stage : report.stages) metrics.set_stage(stage);
   collect_queues(state);
 }

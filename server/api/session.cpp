@@ -56,6 +56,7 @@ ApiResponse session_response(ServerState& state) {
                {"dropped_frames", report.dropped_frames},
                {"skipped_frames", report.skipped_frames},
                {"pair_skew", skew_json(report.skew)},
+               {"processor_celsius", report.processor_celsius ? Json(*report.processor_celsius) : Json(nullptr)},
                {"alignment", report.alignment},
                {"level", level_json(state.control.levelling())},
                {"viewers", state.num_viewers},

@@ -1,6 +1,6 @@
 find_package(CLI11 REQUIRED)
 flogmap_test(composition_tests
-  SOURCES bounded_queue_test.cpp capture_control_test.cpp option_table_test.cpp stage_statistics_test.cpp
+  SOURCES bounded_queue_test.cpp capture_control_test.cpp option_table_test.cpp processor_heat_test.cpp stage_statistics_test.cpp
           pipeline_loop_test.cpp pipeline_recordings_test.cpp pipeline_test.cpp
   LINK pipeline options trajectory CLI11::CLI11)
 

@@ -73,6 +73,7 @@ StatusReport sample_status() {
   status.mapped_views = 41;
   status.loops = 2;
   status.dropped_frames = 5;
+  status.processor_celsius = 61.5;
   status.skipped_frames = 1;
   status.stages = {{"read", 1.5, 2.5}, {"map", 20.25, 31.75}};
   status.warnings = {"too dark: open the aperture or add light"};

@@ -90,6 +90,7 @@ function factsOf(page: Page, bytesPerSecond: number, metres: number): readonly (
     ['Received', `${formatBytes(bytesPerSecond)}/s, revision ${rev}`],
     ...alignment,
     ...skewFacts(status?.pairSkew),
+    ...(status?.processorCelsius === undefined ? [] : [['Processor', `${Math.round(status.processorCelsius)} °C`] as const]),
     ['Viewers', status ? String(status.viewers) : '–'],
     ['Server', page.live.serverVersion || '–'],
   ];
