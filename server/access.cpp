@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <stdexcept>
+
+#include "server/http_values.hpp"
 
 namespace flogmap {
 namespace {
@@ -15,10 +18,21 @@ constexpr std::size_t kMostLogins = 1024;
 constexpr std::size_t kMostFailingAddresses = 4096;
 constexpr int kMostFailures = 10;
 
-/// The host without port; brackets of an IPv6 address stay off.
+bool is_port(std::string_view text) {
+  int port = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+  return error == std::errc{} && end == text.data() + text.size() && port > 0 && port < 65'536;
+}
+
+/// The host without port; brackets of an IPv6 address stay off. Empty if it is no such thing.
 std::string_view host_name(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(1, host.find(']') - 1);
-  return host.substr(0, host.find(':'));
+  const bool bracketed = host.starts_with('[');
+  const auto behind = bracketed ? host.find(']') : host.find(':');
+  if (bracketed && behind == std::string_view::npos) return {};
+  const std::string_view name = bracketed ? host.substr(1, behind - 1) : host.substr(0, behind);
+  const std::string_view rest = host.substr(std::min(host.size(), bracketed ? behind + 1 : behind));
+  const bool port_is_good = rest.empty() || (rest.front() == ':' && is_port(rest.substr(1)));
+  return port_is_good ? name : std::string_view{};
 }
 
 bool same_secret(std::string_view a, std::string_view b) {
@@ -95,8 +109,10 @@ bool Access::origin_allowed(std::string_view origin, std::string_view host, bool
 
 Role Access::role_of(std::string_view authorization, std::string_view cookie, Time now) const {
   if (open_to_all()) return Role::control;
-  constexpr std::string_view kBearer = "Bearer ";
-  if (authorization.starts_with(kBearer)) return role_of_secret(authorization.substr(kBearer.size()));
+  constexpr std::string_view kBearer = "bearer ";
+  if (lower_case(authorization.substr(0, kBearer.size())) == kBearer) {
+    return role_of_secret(authorization.substr(kBearer.size()));
+  }
   const auto login = logins_.find(cookie_value(cookie));
   return login != logins_.end() && now < login->second.until ? login->second.role : Role::none;
 }

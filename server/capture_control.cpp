@@ -25,14 +25,15 @@ std::string CaptureControl::reason() const {
 
 PlaybackState CaptureControl::playback() const {
   const std::scoped_lock lock(mutex_);
-  if (source_.live || source_.endless || !source_.num_frames) return {};
   PlaybackState playback;
-  playback.seekable = true;
+  playback.paused = state_ == SessionState::paused;
+  if (source_.live) return playback;
+  playback.rate = rate_;
   playback.position_s = static_cast<double>(position_ns_ - source_.first_timestamp_ns) / kNsPerSecond;
+  if (source_.endless || !source_.num_frames) return playback;
+  playback.seekable = true;
   playback.duration_s =
       static_cast<double>(source_.last_timestamp_ns - source_.first_timestamp_ns) / kNsPerSecond;
-  playback.rate = rate_;
-  playback.paused = state_ == SessionState::paused;
   playback.loop = loop_;
   return playback;
 }
@@ -41,9 +42,21 @@ ControlResult CaptureControl::pause() {
   const std::scoped_lock lock(mutex_);
   if (state_ == SessionState::paused) return illegal("already paused");
   if (state_ != SessionState::running) return illegal("only a running session can be paused");
-  state_ = SessionState::paused;
+  come_to_rest();
   changed_.notify_all();
   return {};
+}
+
+/// Also from a seek that is still on its way.
+void CaptureControl::come_to_rest() {
+  state_ = SessionState::paused;
+  hurry_until_ns_ = 0;
+  tell_ = true;
+}
+
+/// Paused, but sought forwards: the frames up to there are read, then it rests again.
+bool CaptureControl::is_on_its_way() const {
+  return state_ == SessionState::paused && position_ns_ < hurry_until_ns_;
 }
 
 ControlResult CaptureControl::resume() {
@@ -80,7 +93,8 @@ ControlResult CaptureControl::change_playback(const PlaybackChange& change) {
   }
   if (change.rate) rate_ = *change.rate;
   if (change.position_s) seek_s_ = change.position_s;
-  if (change.paused) state_ = *change.paused ? SessionState::paused : SessionState::running;
+  if (change.paused == true) come_to_rest();
+  if (change.paused == false) state_ = SessionState::running;
   anchor_.reset();
   changed_.notify_all();
   return {};
@@ -125,8 +139,8 @@ HandLevel CaptureControl::level_of_next_map() {
 }
 
 bool CaptureControl::has_work() const {
-  const bool reads = !ended_generation_ && (state_ == SessionState::running || steps_ > 0);
-  return stop_ || relevel_ || reset_ || seek_s_ || reads;
+  const bool reads = !ended_generation_ && (state_ == SessionState::running || steps_ > 0 || is_on_its_way());
+  return stop_ || tell_ || relevel_ || reset_ || seek_s_ || reads;
 }
 
 CaptureTurn CaptureControl::await_turn() {
@@ -148,7 +162,8 @@ CaptureTurn CaptureControl::await_turn() {
     return {.kind = CaptureTurn::Kind::seek, .position_s = position_s};
   }
   if (std::exchange(relevel_, false)) return {.kind = CaptureTurn::Kind::level};
-  if (state_ == SessionState::paused) --steps_;
+  if (std::exchange(tell_, false)) return {.kind = CaptureTurn::Kind::tell};
+  if (state_ == SessionState::paused && !is_on_its_way()) --steps_;
   return {};
 }
 
@@ -179,11 +194,13 @@ void CaptureControl::await_due(std::int64_t timestamp_ns) {
 void CaptureControl::frame_delivered(std::int64_t timestamp_ns) {
   const std::scoped_lock lock(mutex_);
   position_ns_ = timestamp_ns;
+  if (state_ == SessionState::paused && !is_on_its_way()) tell_ = true;
 }
 
 void CaptureControl::hurry_until(std::int64_t timestamp_ns) {
   const std::scoped_lock lock(mutex_);
   hurry_until_ns_ = timestamp_ns;
+  steps_ = 0;
 }
 
 void CaptureControl::source_ended(std::uint64_t generation) {

@@ -14,7 +14,7 @@ namespace flogmap {
 
 /// What the capture thread does next.
 struct CaptureTurn {
-  enum class Kind : std::uint8_t { read, seek, reset, level, stop };
+  enum class Kind : std::uint8_t { read, seek, reset, level, tell, stop };
   Kind kind = Kind::read;
   double position_s = 0;  // of a seek
 };
@@ -67,6 +67,8 @@ class CaptureControl final : public SessionControl {
 
  private:
   using Clock = std::chrono::steady_clock;
+  void come_to_rest();
+  [[nodiscard]] bool is_on_its_way() const;
   [[nodiscard]] bool has_work() const;
   [[nodiscard]] Clock::time_point due(std::int64_t timestamp_ns);
   ControlResult illegal(const std::string& detail) const { return {ControlOutcome::illegal, detail}; }
@@ -84,6 +86,7 @@ class CaptureControl final : public SessionControl {
   int steps_ = 0;
   HandLevel level_;
   bool relevel_ = false;
+  bool tell_ = false;  // the last counts, since no frame follows
   std::function<std::string()> level_obstacle_;
   double rate_;
   std::int64_t position_ns_ = 0;

@@ -149,10 +149,10 @@ void HttpSession<Stream>::take_request_values() {
   auto& message = parser_->get();
   ApiRequest& request = request_ = {};
   request.method = method_of(message.method());
-  request.accept = text(message[http::field::accept]);
-  request.accept_encoding = text(message[http::field::accept_encoding]);
+  request.accept = lower_case(text(message[http::field::accept]));
+  request.accept_encoding = lower_case(text(message[http::field::accept_encoding]));
   request.if_none_match = text(message[http::field::if_none_match]);
-  request.content_type = text(message[http::field::content_type]);
+  request.content_type = lower_case(text(message[http::field::content_type]));
   request.cookie = text(message[http::field::cookie]);
   request.authorization = text(message[http::field::authorization]);
   request.host = text(message[http::field::host]);
@@ -175,6 +175,9 @@ void HttpSession<Stream>::handle() {
   }
   if (!parse_target(target, request)) {
     return respond(problem(400, "bad-url", "the URL holds a broken escape"), keep_alive);
+  }
+  if (message.count(http::field::host) > 1) {
+    return respond(problem(400, "host-ambiguous", "send one Host header", "Host"), false);
   }
   if (request.host.empty()) return respond(problem(400, "host-missing", "send a Host header"), false);
   if (request.path == kStreamPath && request.method == Method::get) return open_stream();

@@ -72,7 +72,40 @@ double liking(std::string_view accept, std::string_view type) {
   return best;
 }
 
+/// What stands before the path of an absolute URL, as proxies are asked for; empty where it begins with the
+/// path.
+std::string_view take_authority(std::string_view& target) {
+  const std::string scheme = lower_case(target.substr(0, target.find("://")));
+  if (scheme != "http" && scheme != "https") return {};
+  target.remove_prefix(scheme.size() + 3);
+  const std::string_view authority = target.substr(0, target.find_first_of("/?"));
+  target.remove_prefix(authority.size());
+  return authority;
+}
+
+/// "?c=d&e=f", or nothing.
+bool parse_query(std::string_view query, ApiRequest& into) {
+  if (query.empty()) return true;
+  bool good = true;
+  for_each_part(query.substr(1), '&', [&](std::string_view part) {
+    if (part.empty()) return;
+    const auto equals = part.find('=');
+    const auto key = percent_decoded(part.substr(0, equals), true);
+    const auto value = equals == std::string_view::npos ? std::optional<std::string>("")
+                                                        : percent_decoded(part.substr(equals + 1), true);
+    good = good && key && value;
+    if (good) into.query.emplace_back(*key, *value);
+  });
+  return good;
+}
+
 }  // namespace
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower;
+}
 
 std::optional<std::string_view> ApiRequest::parameter(std::string_view name) const {
   for (const auto& [key, value] : query) {
@@ -144,22 +177,18 @@ std::string_view reason_phrase(int status) {
 }
 
 bool parse_target(std::string_view target, ApiRequest& into) {
-  const auto mark = target.find('?');
-  const auto path = percent_decoded(target.substr(0, mark), false);
+  if (const std::string_view authority = take_authority(target); !authority.empty()) {
+    into.host = authority;
+    if (target.empty() || target.front() == '?') {
+      into.path.assign(1, '/');
+      return parse_query(target, into);
+    }
+  }
+  const std::string_view raw_path = target.substr(0, target.find('?'));
+  const auto path = percent_decoded(raw_path, false);
   if (!path || !path->starts_with('/')) return false;
   into.path = *path;
-  if (mark == std::string_view::npos) return true;
-  bool good = true;
-  for_each_part(target.substr(mark + 1), '&', [&](std::string_view part) {
-    if (part.empty()) return;
-    const auto equals = part.find('=');
-    const auto key = percent_decoded(part.substr(0, equals), true);
-    const auto value = equals == std::string_view::npos ? std::optional<std::string>("")
-                                                        : percent_decoded(part.substr(equals + 1), true);
-    good = good && key && value;
-    if (good) into.query.emplace_back(*key, *value);
-  });
-  return good;
+  return parse_query(target.substr(raw_path.size()), into);
 }
 
 std::optional<std::string_view> negotiate(std::string_view accept,

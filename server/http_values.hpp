@@ -22,7 +22,7 @@ struct ApiRequest {
   std::string path;                                        // decoded, without the query
   std::vector<std::pair<std::string, std::string>> query;  // decoded
   std::vector<std::string> captures;                       // what stands for each {} of the route
-  std::string accept;
+  std::string accept;  // lower case, as are accept_encoding and content_type
   std::string accept_encoding;
   std::string if_none_match;
   std::string content_type;
@@ -65,11 +65,14 @@ ApiResponse json_response(std::string json, int status = 200);
 /// Likewise, of which a copy may be kept under this tag.
 ApiResponse tagged_json(std::string json, std::string etag);
 
+/// ASCII only: names of schemes and media types, which mean the same in any case.
+std::string lower_case(std::string_view text);
+
 /// Reason phrase of a status code.
 std::string_view reason_phrase(int status);
 
-/// Splits and decodes "/a%20b?c=d" into path and query; false if an escape is broken or a byte is not
-/// allowed.
+/// Splits and decodes "/a%20b?c=d", or "http://host/a%20b?c=d" of which the host replaces the request's, into
+/// path and query; false if an escape is broken or a byte is not allowed.
 bool parse_target(std::string_view target, ApiRequest& into);
 
 /// Of `offered` media types the one that an Accept header likes best, the first of equals; nothing if none.

@@ -5,6 +5,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -24,16 +25,22 @@ namespace {
 
 constexpr std::chrono::seconds kComplainEvery{10};
 
+[[noreturn]] void refuse_tls_file(const std::string& option, const std::string& file,
+                                  const std::string& wanted) {
+  const bool readable = std::ifstream(file).good();
+  throw std::invalid_argument("--" + option + " " + file +
+                              (readable ? " is not " + wanted : ": no such file, or it cannot be read"));
+}
+
 net::ssl::context tls_context(const ServeOptions& options) {
   net::ssl::context tls(net::ssl::context::tls_server);
   tls.set_options(net::ssl::context::default_workarounds | net::ssl::context::no_compression);
   SSL_CTX_set_min_proto_version(tls.native_handle(), TLS1_2_VERSION);
   error_code error;
   tls.use_certificate_chain_file(options.tls_cert, error);
-  if (error)
-    throw std::runtime_error("tls-cert: " + options.tls_cert + " is no PEM certificate: " + error.message());
+  if (error) refuse_tls_file("tls-cert", options.tls_cert, "a PEM certificate");
   tls.use_private_key_file(options.tls_key, net::ssl::context::pem, error);
-  if (error) throw std::runtime_error("tls-key: " + options.tls_key + " does not fit: " + error.message());
+  if (error) refuse_tls_file("tls-key", options.tls_key, "the PEM private key of " + options.tls_cert);
   return tls;
 }
 
@@ -52,6 +59,10 @@ std::string plain_address(const net::ip::address& address) {
 }
 
 }  // namespace
+
+void check_tls(const ServeOptions& options) {
+  if (!options.tls_cert.empty()) (void)tls_context(options);
+}
 
 Listener::Listener(net::io_context& network, const ServeOptions& options, SessionContext context,
                    ConnectionLimit& limit)

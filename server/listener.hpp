@@ -11,6 +11,10 @@
 
 namespace flogmap {
 
+/// Throws std::invalid_argument in one line if the files of a certificate and its key cannot be used
+/// together.
+void check_tls(const ServeOptions& options);
+
 /// Accepts connections, within the limits.
 class Listener {
  public:

@@ -18,11 +18,11 @@ std::string to_string(const std::vector<std::uint8_t>& bytes) { return {bytes.be
 
 /// As large as wanted, never larger than it is.
 cv::Mat fitted(const cv::Mat& picture, int max_width_px, int interpolation) {
-  if (max_width_px <= 0 || picture.cols <= max_width_px) return picture;
-  const int height =
-      std::max(1, static_cast<int>(std::lround(picture.rows * max_width_px / double(picture.cols))));
+  const PictureSize size = fitted_size(picture.cols, picture.rows, max_width_px);
+  if (size.width == picture.cols) return picture;
   cv::Mat out;
-  cv::resize(picture, out, cv::Size(max_width_px, height), 0, 0, interpolation);
+  cv::resize(picture, out, cv::Size(static_cast<int>(size.width), static_cast<int>(size.height)), 0, 0,
+             interpolation);
   return out;
 }
 
@@ -92,12 +92,40 @@ EncodedPicture encode_disparity(const Image<float>& image, PictureKey key, std::
 
 }  // namespace
 
+PictureSize fitted_size(std::int64_t width, std::int64_t height, std::int64_t max_width_px) {
+  if (max_width_px <= 0 || width <= max_width_px) return {width, height};
+  const double scale = static_cast<double>(max_width_px) / static_cast<double>(width);
+  return {max_width_px, std::max<std::int64_t>(1, std::llround(static_cast<double>(height) * scale))};
+}
+
+Image<std::uint8_t> shrunk_to_largest(const Image<std::uint8_t>& image, PictureSize size) {
+  if (size.width == image.width && size.height == image.height) return image;
+  Image<std::uint8_t> small(static_cast<int>(size.width), static_cast<int>(size.height), 0);
+  // Pixel i of n covers what lies between i/n and (i+1)/n of the image: columns that two share count in both.
+  const auto first = [](std::int64_t i, std::int64_t n, std::int64_t of) { return i * of / n; };
+  const auto behind = [](std::int64_t i, std::int64_t n, std::int64_t of) {
+    return ((i + 1) * of + n - 1) / n;
+  };
+  for (int v = 0; v < small.height; ++v) {
+    std::uint8_t* out = small.row(v);
+    const auto last_row = static_cast<int>(behind(v, small.height, image.height));
+    for (auto y = static_cast<int>(first(v, small.height, image.height)); y < last_row; ++y) {
+      const std::uint8_t* row = image.row(y);
+      for (int u = 0; u < small.width; ++u) {
+        const std::uint8_t* end = row + behind(u, small.width, image.width);
+        out[u] = std::max(out[u], *std::max_element(row + first(u, small.width, image.width), end));
+      }
+    }
+  }
+  return small;
+}
+
 PictureKey picture_key(const ImageRequest& request) {
-  constexpr std::array kWidths{1280, 960, 640, 480, 320, 240, 160};
+  constexpr std::array kWidths{1280, 960, 640, 480, 320, 240, 160, 120, 80, 40, 20, 10, 5, 2, 1};
   if (request.max_width_px <= 0) return {request.stream, 0};
   const auto width =
       std::find_if(kWidths.begin(), kWidths.end(), [&](int w) { return w <= request.max_width_px; });
-  return {request.stream, width == kWidths.end() ? kWidths.back() : *width};
+  return {request.stream, *width};
 }
 
 std::optional<EncodedPicture> encode_picture(const PictureReport& report, PictureKey key) {
@@ -111,14 +139,8 @@ std::optional<EncodedPicture> encode_picture(const PictureReport& report, Pictur
   return encode_grey(image, key, report.timestamp_ns);
 }
 
-std::string encode_coloured_png(const Image<std::uint8_t>& values, Palette palette, int max_width_px) {
-  const cv::Mat full(values.height, values.width, CV_8U, const_cast<std::uint8_t*>(values.pixels.data()));
-  cv::Mat sent = full;
-  if (max_width_px > 0 && values.width > max_width_px) {
-    const int factor = (values.width + max_width_px - 1) / max_width_px;
-    cv::dilate(full, sent, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(factor, factor)));
-    sent = fitted(sent, max_width_px, cv::INTER_NEAREST);
-  }
+std::string encode_coloured_png(const Image<std::uint8_t>& values, Palette palette) {
+  const cv::Mat sent(values.height, values.width, CV_8U, const_cast<std::uint8_t*>(values.pixels.data()));
   cv::Mat picture;
   if (palette == Palette::grey) {
     cv::bitwise_not(sent, picture);  // white free or unknown, black occupied

@@ -74,7 +74,7 @@ void Pipeline::see() {
   while (std::optional<Captured> captured = frames_.pop()) {
     if (captured->generation.number != seen_generation_) begin_generation(captured->generation);
     if (captured->ended) finish(captured->generation);
-    if (captured->trouble) report_status();
+    if (captured->tell) report_status();
     if (captured->level) level_map(*captured->level);
     if (!captured->frame) continue;
     correct_path();

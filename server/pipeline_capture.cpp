@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 void Pipeline::capture() {
   source_->on_trouble([this] {
     note_losses();
-    frames_.push({.generation = generation_, .frame = {}, .trouble = true, .at = Clock::now()});
+    frames_.push({.generation = generation_, .frame = {}, .tell = true, .at = Clock::now()});
   });
   const std::string epoch = options_.continued.epoch;
   generation_ = {1, epoch.empty() ? random_epoch() : epoch, epoch.empty() ? "started" : "continued",
@@ -39,6 +39,9 @@ void Pipeline::capture() {
                       .frame = {},
                       .level = control_.levelling().level,
                       .at = Clock::now()});
+        break;
+      case CaptureTurn::Kind::tell:
+        frames_.push({.generation = generation_, .frame = {}, .tell = true, .at = Clock::now()});
         break;
       case CaptureTurn::Kind::read:
         if (!read_frame()) {

@@ -48,7 +48,8 @@ std::optional<double> ProcessorHeat::read() {
 }
 
 std::string ProcessorHeat::warning() const {
-  return hot_ ? "the processor is hotter than 80 degrees and slows itself down: give it air or less to do" : "";
+  return hot_ ? "the processor is hotter than 80 degrees and slows itself down: give it air or less to do"
+              : "";
 }
 
 }  // namespace flogmap

@@ -65,9 +65,9 @@ struct StatusReport {
   std::uint64_t skipped_frames = 0;  // could not be read
   std::vector<StageReport> stages;
   std::vector<QueueReport> queues;
-  std::vector<std::string> warnings;  // in words, with what to do
-  std::string alignment;              // given, gravity, ground, none
-  std::optional<PairSkew> skew;       // of sources that time both pictures
+  std::vector<std::string> warnings;        // in words, with what to do
+  std::string alignment;                    // given, gravity, ground, none
+  std::optional<PairSkew> skew;             // of sources that time both pictures
   std::optional<double> processor_celsius;  // where the system tells it
 };
 

@@ -60,7 +60,7 @@ std::string response_head(const ApiResponse& response, bool keep_alive) {
 
 std::string refused_connection() {
   ApiResponse response = problem(429, "too-many-connections", "too many connections are open; close some");
-  response.headers.emplace_back("Retry-After", "5");
+  response.headers = {{"Retry-After", "5"}};
   return response_head(response, false) + *response.body;
 }
 

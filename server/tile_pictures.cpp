@@ -45,7 +45,7 @@ Bytes TilePictures::png(TileBoard& board, Slot slot, const PictureChoice& choice
   if (kept != kept_.end() && kept->second.revision == board.revision(slot)) return kept->second.png;
   if (kept_.size() >= kMostKept) kept_.clear();
   const Bytes png =
-      to_shared(encode_coloured_png(north_up(styled_plane(board, slot, choice)), choice.palette, 0));
+      to_shared(encode_coloured_png(north_up(styled_plane(board, slot, choice)), choice.palette));
   kept_[key] = {board.revision(slot), png};
   return png;
 }

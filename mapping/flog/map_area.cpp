@@ -23,6 +23,11 @@ bool seen(const Tile& tile, int column) {
 
 }  // namespace
 
+MapArea intersection(const MapArea& a, const MapArea& b) {
+  return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
+          {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}};
+}
+
 MapArea tiled_area(const MapSnapshot& map) {
   MapArea area;
   for (const auto& [index, tile] : map.tiles) {

@@ -21,6 +21,9 @@ struct MapArea {
   bool operator==(const MapArea&) const = default;
 };
 
+/// What lies in both.
+MapArea intersection(const MapArea& a, const MapArea& b);
+
 /// The smallest area that holds all tiles; empty for an empty map. Takes time by the number of tiles.
 MapArea tiled_area(const MapSnapshot& map);
 

@@ -14,15 +14,18 @@ MapArea grown(const MapArea& area, int margin) {
   return {{area.low.x - margin, area.low.y - margin}, {area.high.x + margin, area.high.y + margin}};
 }
 
+void require_drawable(const MapArea& area) {
+  if (area.width() <= kMaxPicturePixels && area.width() * area.height() <= kMaxPicturePixels) return;
+  throw std::length_error("a picture of " + std::to_string(area.width()) + " x " +
+                          std::to_string(area.height()) + " cells is too large");
+}
+
 /// Fills an image of an area, row 0 at the highest y, from planes of its tiles.
 template <typename PlaneOf>
 Image<std::uint8_t> collect(const MapSnapshot& map, const MapArea& area, std::uint8_t unseen,
                             const PlaneOf& plane_of) {
   if (area.empty()) return {};
-  if (area.width() > kMaxPicturePixels || area.width() * area.height() > kMaxPicturePixels) {
-    throw std::length_error("a picture of " + std::to_string(area.width()) + " x " +
-                            std::to_string(area.height()) + " cells is too large");
-  }
+  require_drawable(area);
   Image<std::uint8_t> image(static_cast<int>(area.width()), static_cast<int>(area.height()), unseen);
   for (const auto& [index, tile] : map.tiles) {
     const CellIndex first = first_cell(index);
@@ -36,6 +39,18 @@ Image<std::uint8_t> collect(const MapSnapshot& map, const MapArea& area, std::ui
     }
   }
   return image;
+}
+
+/// An image of `drawn` as a part of one of `area`; all else of it has the value `unseen`.
+Image<std::uint8_t> framed(Image<std::uint8_t> image, const MapArea& drawn, const MapArea& area,
+                           std::uint8_t unseen) {
+  if (drawn == area) return image;
+  Image<std::uint8_t> frame(static_cast<int>(area.width()), static_cast<int>(area.height()), unseen);
+  for (int y = 0; y < image.height; ++y) {
+    std::copy(image.row(y), image.row(y) + image.width,
+              frame.row(area.high.y - drawn.high.y + y) + (drawn.low.x - area.low.x));
+  }
+  return frame;
 }
 
 Image<std::uint8_t> cropped(const Image<std::uint8_t>& image, int margin) {
@@ -89,10 +104,16 @@ MapPicture map_picture(const MapSnapshot& map, const MapArea& area, std::optiona
                        const Rules& rules) {
   const double radius = rules.robot_radius_m / map.info.grid.cell_size_m;
   const int margin = area.empty() ? 0 : static_cast<int>(radius);
-  Image<std::uint8_t> values =
-      collect(map, grown(area, margin), unseen_value(map.info, rules),
-              [&](const Tile& tile) { return value_plane(tile, map.info, layer, rules); });
-  if (margin > 0) values = cropped(spread_largest(values, radius), margin);
+  require_drawable(area);
+  const std::uint8_t unseen = unseen_value(map.info, rules);
+  const MapArea drawn = intersection(area, grown(tiled_area(map), margin));  // beyond it nothing is known
+  Image<std::uint8_t> values;
+  if (!drawn.empty()) {
+    values = collect(map, grown(drawn, margin), unseen,
+                     [&](const Tile& tile) { return value_plane(tile, map.info, layer, rules); });
+    if (margin > 0) values = cropped(spread_largest(values, radius), margin);
+  }
+  values = framed(std::move(values), drawn, area, unseen);
   for (std::uint8_t& value : values.pixels) value = static_cast<std::uint8_t>(255 - value);
   return {std::move(values), area, map.info.grid.cell_size_m};
 }

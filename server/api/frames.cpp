@@ -15,6 +15,10 @@ ImageStream requested_stream(const std::string& name) {
 
 ApiAnswer get_latest(const ApiRequest& request, ServerState& state) {
   const ImageStream stream = requested_stream(request.captures.at(0));
+  if (state.control.state() == SessionState::stored) {
+    throw RefusedRequest(404, "no-pictures",
+                         "a stored map has no camera; its views are under maps/{id}/views");
+  }
   const auto width = integer_parameter(request, "max_width", 0, 0, 65536);
   state.pictures_asked_at = std::chrono::steady_clock::now();
   const PictureKey key = picture_key({stream, 0, static_cast<int>(width)});

@@ -40,27 +40,28 @@ Json level_json(const LevelState& levelling) {
 
 ApiResponse session_response(ServerState& state) {
   const StatusReport& report = state.status;
-  Json json = {{"state", name_of(state.session_state())},
-               {"reason", state.control.reason()},
-               {"source", state.control.source()},
-               {"live", state.control.live()},
-               {"epoch", state.live ? Json(state.live->epoch()) : Json(nullptr)},
-               {"rev", state.live ? Json(state.live->revision()) : Json(nullptr)},
-               {"frames_per_s", report.frames_per_s},
-               {"frames", report.frames},
-               {"tracked", report.tracked},
-               {"lost", report.lost},
-               {"mapped_views", report.mapped_views},
-               {"waiting_views", report.waiting_views},
-               {"loops", report.loops},
-               {"dropped_frames", report.dropped_frames},
-               {"skipped_frames", report.skipped_frames},
-               {"pair_skew", skew_json(report.skew)},
-               {"processor_celsius", report.processor_celsius ? Json(*report.processor_celsius) : Json(nullptr)},
-               {"alignment", report.alignment},
-               {"level", level_json(state.control.levelling())},
-               {"viewers", state.num_viewers},
-               {"warnings", report.warnings}};
+  Json json = {
+      {"state", name_of(state.session_state())},
+      {"reason", state.control.reason()},
+      {"source", state.control.source()},
+      {"live", state.control.live()},
+      {"epoch", state.live ? Json(state.live->epoch()) : Json(nullptr)},
+      {"rev", state.live ? Json(state.live->revision()) : Json(nullptr)},
+      {"frames_per_s", report.frames_per_s},
+      {"frames", report.frames},
+      {"tracked", report.tracked},
+      {"lost", report.lost},
+      {"mapped_views", report.mapped_views},
+      {"waiting_views", report.waiting_views},
+      {"loops", report.loops},
+      {"dropped_frames", report.dropped_frames},
+      {"skipped_frames", report.skipped_frames},
+      {"pair_skew", skew_json(report.skew)},
+      {"processor_celsius", report.processor_celsius ? Json(*report.processor_celsius) : Json(nullptr)},
+      {"alignment", report.alignment},
+      {"level", level_json(state.control.levelling())},
+      {"viewers", state.num_viewers},
+      {"warnings", report.warnings}};
   return json_response(json.dump());
 }
 

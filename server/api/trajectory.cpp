@@ -48,9 +48,14 @@ ApiAnswer get_trajectory(const ApiRequest& request, ServerState& state) {
   const std::int64_t from = std::min(integer_parameter(request, "from", 0, 0, INT64_MAX), length);
   const Entries entries = Entries(map.trajectory()).subspan(static_cast<std::size_t>(from));
   const std::string etag = etag_with_path(map, request, state.options);
-  if (is_known(request, etag)) return nothing_new(etag);
-  if (format == "json") return tagged_json(to_json(map, static_cast<std::size_t>(from), entries), etag);
   ApiResponse response = nothing_new(etag);
+  response.headers.emplace_back("Vary", "Accept");
+  if (is_known(request, etag)) return response;
+  if (format == "json") {
+    response.content_type = "application/json";
+    response.body = to_shared(to_json(map, static_cast<std::size_t>(from), entries));
+    return response;
+  }
   response.content_type = format == "pb" ? "application/x-protobuf" : "text/plain; charset=utf-8";
   response.body = to_shared(format == "pb"    ? encode_trajectory(map.epoch(), entries)
                             : format == "tum" ? tum_of(entries)

@@ -56,6 +56,17 @@ void store_now(MapStore& store, const StoredMap& map) {
   }
 }
 
+/// How many rays a cell needs to count as seen, or as surely known, is a rule over what is stored and may
+/// change with every start. True if it has; what viewers keep was made by the old one.
+bool follow_options(MapInfo& info, const FlogOptions& flog) {
+  const MapInfo before = info;
+  info.min_rays = static_cast<std::uint16_t>(flog.min_rays);
+  if (flog.full_confidence_rays > 0) {
+    for (float& N_K : info.full_confidence_rays) N_K = static_cast<float>(flog.full_confidence_rays);
+  }
+  return info != before;
+}
+
 void let_tiles_follow_path(StoredMap& map, const FlogOptions& flog, const std::filesystem::path& file) {
   map.behind = false;
   log_event(LogLevel::warning, "the stored map is built anew: its path was corrected just before the end",
@@ -105,7 +116,8 @@ std::optional<StoredMap> take_up(MapStore& store, const FlogOptions& flog) {
   std::optional<StoredMap> stored = store.load();
   if (!stored) return std::nullopt;
   check_same_grid(store.path(), stored->info.grid, flog.grid);
-  const bool changes = stored->behind || !store.ended_cleanly();
+  const bool other_rules = follow_options(stored->info, flog);
+  const bool changes = other_rules || stored->behind || !store.ended_cleanly();
   if (stored->behind) let_tiles_follow_path(*stored, flog, store.path());
   if (!changes) return stored;
   outrank_what_viewers_know(*stored);

@@ -10,8 +10,9 @@
 namespace flogmap {
 
 /// The stored map; nothing while none was begun. Throws std::runtime_error if its cells are not those of the
-/// options. After a kill its revisions are above all that viewers may know. If the tiles were behind the
-/// path, they are those of the kept views now, each where the path has it.
+/// options. --min-rays and a given --full-confidence-rays hold from now on, also for what is stored. After a
+/// kill its revisions are above all that viewers may know. If the tiles were behind the path, they are those
+/// of the kept views now, each where the path has it.
 std::optional<StoredMap> take_up(MapStore& store, const FlogOptions& flog);
 
 /// load_map(), its tiles likewise those of its path.

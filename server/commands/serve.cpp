@@ -34,13 +34,18 @@ MapBegin begin_of(const StoredMap& map, const std::string& reason) {
           .level = map.level};
 }
 
-/// A map that cannot be used is bad input.
-StoredMap load_input(const std::filesystem::path& file) {
+/// A map or store that cannot be used, or not with these options, is bad input.
+template <typename Use>
+auto as_input(const Use& use) {
   try {
-    return load_settled_map(file);
+    return use();
   } catch (const std::exception& error) {
     throw UsageError(error.what());
   }
+}
+
+StoredMap load_input(const std::filesystem::path& file) {
+  return as_input([&] { return load_settled_map(file); });
 }
 
 /// Every *.flog of a folder, by the name of its file.
@@ -75,7 +80,7 @@ int serve_stored(const Options& options, const HubInfo& info) {
 
 /// Takes up the map that the store holds, if there is one.
 ContinuedMap continue_stored(MapStore& store, const Options& options, MappingSession& session) {
-  std::optional<StoredMap> stored = take_up(store, options.flog);
+  std::optional<StoredMap> stored = as_input([&] { return take_up(store, options.flog); });
   if (!stored) return {};
   session.integrator.restore(snapshot_of(*stored));
   // A robot is where it was switched off; a recording begins where it always does.
@@ -85,15 +90,6 @@ ContinuedMap continue_stored(MapStore& store, const Options& options, MappingSes
     stored->level = {};  // it stands in the levelled world
   }
   return {stored->epoch, stored->tiles, stored->trajectory, stored->views, stored->level};
-}
-
-/// A store that cannot be used is bad input.
-MapStore open_store(const std::string& file) {
-  try {
-    return MapStore(file);
-  } catch (const std::exception& error) {
-    throw UsageError(error.what());
-  }
 }
 
 void log_failure(const std::exception_ptr& failure) {
@@ -131,7 +127,7 @@ int serve_source(const Options& options, HubInfo info) {
   std::unique_ptr<StoreWriter> store;
   PipelineOptions pipeline_options;
   if (!options.store.empty()) {
-    MapStore file = open_store(options.store);
+    MapStore file = as_input([&] { return MapStore(options.store); });
     pipeline_options.continued = continue_stored(file, options, session);
     store = std::make_unique<StoreWriter>(std::move(file), info.config_json, info.calibration_json);
   }

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "server/access.hpp"
+#include "server/listener.hpp"
 #include "server/log.hpp"
 #include "server/option_table.hpp"
 
@@ -31,6 +32,7 @@ void settle_serving(Options& options) {
   try {
     options.serve.tokens = read_tokens(options.tokens_file);
     check(options.serve);
+    check_tls(options.serve);
   } catch (const std::exception& error) {
     throw UsageError(error.what());
   }

@@ -34,6 +34,58 @@ TEST(CaptureControl, PositionAndDurationCountFromTheFirstFrame) {
   EXPECT_DOUBLE_EQ(control.playback().duration_s, 10);
 }
 
+TEST(CaptureControl, ASimulatedWalkHasNoEndButARateAndAPause) {
+  SourceInfo walk = recording();
+  walk.endless = true;
+  walk.num_frames.reset();
+  CaptureControl control = running(walk);
+  control.started();
+  EXPECT_EQ(control.change_playback({.rate = 2, .paused = true}).outcome, ControlOutcome::done);
+  control.frame_delivered(7 * kSecond);
+  EXPECT_FALSE(control.playback().seekable);
+  EXPECT_TRUE(control.playback().paused);
+  EXPECT_DOUBLE_EQ(control.playback().rate, 2);
+  EXPECT_DOUBLE_EQ(control.playback().position_s, 2);
+}
+
+/// What the capture thread does until it would wait: positions of the frames read.
+std::vector<std::int64_t> read_until_rest(CaptureControl& control, std::int64_t next_s) {
+  std::vector<std::int64_t> read;
+  for (;;) {
+    const CaptureTurn turn = control.await_turn();
+    if (turn.kind == CaptureTurn::Kind::seek)
+      control.hurry_until((5 + std::int64_t(turn.position_s)) * kSecond);
+    if (turn.kind == CaptureTurn::Kind::tell) return read;  // it comes to rest
+    if (turn.kind != CaptureTurn::Kind::read) continue;
+    read.push_back(next_s);
+    control.frame_delivered((5 + next_s++) * kSecond);
+  }
+}
+
+TEST(CaptureControl, SoughtForwardsWhilePausedItGoesThereAndRests) {
+  CaptureControl control = running(recording());
+  control.started();
+  control.frame_delivered(6 * kSecond);
+  control.pause();
+  EXPECT_TRUE(read_until_rest(control, 2).empty());
+  control.change_playback({.position_s = 5});
+  EXPECT_EQ(read_until_rest(control, 2), (std::vector<std::int64_t>{2, 3, 4, 5}));
+  control.step();
+  EXPECT_EQ(read_until_rest(control, 6), (std::vector<std::int64_t>{6}));
+  EXPECT_EQ(control.state(), SessionState::paused);
+}
+
+TEST(CaptureControl, APauseEndsASeekOnItsWay) {
+  CaptureControl control = running(recording());
+  control.started();
+  control.change_playback({.position_s = 8});
+  EXPECT_EQ(control.await_turn().kind, CaptureTurn::Kind::seek);
+  control.hurry_until(13 * kSecond);
+  control.frame_delivered(7 * kSecond);
+  control.pause();
+  EXPECT_TRUE(read_until_rest(control, 3).empty());
+}
+
 TEST(CaptureControl, EveryIllegalTransitionIsRefusedWithAReason) {
   CaptureControl control = running(recording());
   EXPECT_EQ(control.pause().outcome, ControlOutcome::illegal);  // not started yet

@@ -94,7 +94,14 @@ TEST_F(HttpTest, EveryRequestGetsTheRightStatus) {
       {"GET", "/api/v1/maps/live/changes?bbox=1,2,3", 400, {}, ""},
       {"GET", "/api/v1/maps/live/image.png", 200, {}, ""},
       {"GET", "/api/v1/maps/live/image.png?bbox=-1000,-1000,1000,1000", 422, {}, ""},
+      {"GET", "/api/v1/maps/live/image.png?bbox=0,0,0.02,1000000&width=1", 422, {}, ""},
+      {"GET", "/api/v1/maps/live/image.png?bbox=0,0,1000000,0.02&width=16384", 200, {}, ""},
       {"GET", "/api/v1/maps/live/trajectory", 200, {}, ""},
+      {"GET", "/api/v1/maps/live/trajectory", 200, {{"Accept", "APPLICATION/Json"}}, ""},
+      {"GET", "http://localhost/api/v1/maps", 200, {}, ""},
+      {"GET", "http://localhost?x=1", 200, {}, ""},
+      {"GET", "http://evil.example/api/v1/maps", 403, {}, ""},
+      {"GET", "/api/v1/maps", 403, {{"Host", "localhost:abc"}}, ""},
       {"GET", "/api/v1/maps/live/trajectory?format=xml", 400, {}, ""},
       {"GET", "/api/v1/maps/live/export", 400, {}, ""},
       {"GET", "/api/v1/maps/live/export?format=doc", 400, {}, ""},
@@ -117,6 +124,7 @@ TEST_F(HttpTest, EveryRequestGetsTheRightStatus) {
       {"PATCH", "/api/v1/playback", 422, {{"Content-Type", json_type}}, R"({"rate":-1})"},
       {"PATCH", "/api/v1/playback", 422, {{"Content-Type", json_type}}, R"({"speed":1})"},
       {"PATCH", "/api/v1/playback", 200, {{"Content-Type", json_type}}, R"({"rate":2})"},
+      {"PATCH", "/api/v1/playback", 200, {{"Content-Type", "Application/JSON"}}, R"({"rate":2})"},
       {"POST", "/api/v1/maps/live/tiles:batchGet", 415, {}, "{}"},
       {"POST", "/api/v1/maps/live/tiles:batchGet", 422, {{"Content-Type", json_type}}, "{}"},
       {"POST", "/api/v1/maps/live/tiles:batchGet", 200, {{"Content-Type", json_type}}, R"({"tiles":[]})"},
@@ -207,6 +215,39 @@ TEST_F(HttpTest, ATileComesInTheFormatThatIsAskedFor) {
   const json tile = json::parse(get(target + "?f=json").body);
   EXPECT_EQ(tile["layers"].size(), 3U);
   EXPECT_EQ(tile["layers"][0]["E"].size(), 4096U);
+}
+
+/// Width and height as a PNG's head says them.
+std::pair<int, int> png_size(const std::string& png) {
+  const auto number = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = 256 * value + static_cast<unsigned char>(png.at(i));
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST_F(HttpTest, APictureIsAsLargeAsItsBoxAndSaysHowLargeAPixelIs) {
+  const double a = json::parse(get("/api/v1/maps/live").body)["cell_size"];
+  const auto box = [a](double x0, double y0, double x1, double y1) {
+    return "/api/v1/maps/live/image.png?bbox=" + std::to_string(a * x0) + "," + std::to_string(a * y0) + "," +
+           std::to_string(a * x1) + "," + std::to_string(a * y1);
+  };
+  EXPECT_EQ(png_size(get(box(-3, -5, 47, 15)).body), std::pair(50, 20));
+  EXPECT_EQ(png_size(get(box(0, 0, 1, 1)).body), std::pair(1, 1));
+  EXPECT_EQ(png_size(get(box(0.4, 0.4, 0.6, 1.1)).body), std::pair(1, 2));
+  const HttpReply small = get(box(0, 0, 100, 40) + "&width=25");
+  EXPECT_EQ(png_size(small.body), std::pair(25, 10));
+  EXPECT_NEAR(std::stod(small.headers.at("flogmap-cell-size")), 4 * a, 1e-6);
+  EXPECT_NEAR(std::stod(get(box(0, 0, 100, 40)).headers.at("flogmap-cell-size")), a, 1e-6);
+}
+
+TEST_F(HttpTest, APictureIsNeverWiderThanAskedFor) {
+  for (const int most : {1, 7, 100, 250}) {
+    const HttpReply reply = get("/api/v1/frames/disparity/latest?max_width=" + std::to_string(most));
+    ASSERT_EQ(reply.status, 200);
+    EXPECT_LE(png_size(reply.body).first, most);
+  }
 }
 
 TEST_F(HttpTest, ChangesNameEveryTileOnce) {

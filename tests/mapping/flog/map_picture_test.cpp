@@ -69,6 +69,29 @@ TEST(MapPicture, GrowsObstaclesByTheRobotsRadiusAcrossTilesAndFromOutside) {
   }
 }
 
+TEST(MapPicture, APartOfALargerPictureIsThePictureOfThatPart) {
+  MapCanvas canvas;
+  canvas.set({63, 10}, 0, kOccupiedCell);
+  canvas.set({-3, -60}, 1, kFreeCell);
+  const MapArea whole{{-300, -200}, {250, 260}};  // tiles are only about its middle
+  for (const Style style : {Style::visual, Style::motion, Style::planning}) {
+    Rules rules;
+    rules.style = style;
+    rules.robot_radius_m = 0.1;
+    const MapPicture picture = map_picture(canvas.map(), whole, std::nullopt, rules);
+    for (const MapArea& part : {MapArea{{60, 0}, {70, 15}},
+                                {{-66, -70}, {-60, -60}},
+                                {{200, 200}, {210, 210}},
+                                {{120, -5}, {140, 90}}}) {
+      const MapPicture alone = map_picture(canvas.map(), part, std::nullopt, rules);
+      for (int x = part.low.x; x < part.high.x; ++x) {
+        for (int y = part.low.y; y < part.high.y; ++y)
+          EXPECT_EQ(at(alone, {x, y}), at(picture, {x, y})) << x << " " << y;
+      }
+    }
+  }
+}
+
 TEST(MapPicture, TrinaryCallsFreeOnlyWhatIsFreeAtEveryHeight) {
   MapCanvas canvas;
   for (int layer = 0; layer < 3; ++layer) canvas.set({0, 0}, layer, kFreeCell);
