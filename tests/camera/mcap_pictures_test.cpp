@@ -150,7 +150,7 @@ TEST_F(McapPictures, CalibrationsComeFromTheTopicsBeside) {
       out.add_channel(side + image, "sensor_msgs/msg/Image", "cdr");
       out.add_channel(std::string(side) + "camera_info", "sensor_msgs/msg/CameraInfo", "cdr");
     }
-    for (const std::uint16_t id : {1, 3}) out.add_message(id, kStart, picture_message({}, 1, kStart));
+    for (const int id : {1, 3}) out.add_message(id, kStart, picture_message({}, 1, kStart));
     out.add_message(2, kStart, info_message({}, left));
     out.add_message(4, kStart, info_message({}, right));
     return out.finish();

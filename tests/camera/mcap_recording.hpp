@@ -49,7 +49,7 @@ class McapRecordings : public Recordings {
     return out;
   }
   static void add_pair(McapWriter& out, int i, Dialect dialect = Dialect::cdr_little) {
-    for (const std::uint16_t side : {1, 2}) {
+    for (const int side : {1, 2}) {
       out.add_message(side, time_of(i) + kDelay + side,
                       picture_message(dialect, 10 * i + side - 1, time_of(i)));
     }

@@ -69,7 +69,7 @@ std::string McapWriter::record(std::uint8_t opcode, const std::string& content) 
   return FieldWriter().number(opcode).number(std::uint64_t{content.size()}).raw(content).bytes();
 }
 
-std::uint16_t McapWriter::add_channel(const std::string& topic, const std::string& schema,
+int McapWriter::add_channel(const std::string& topic, const std::string& schema,
                                       const std::string& encoding) {
   const auto id = ++num_channels_;
   const std::string records =
@@ -80,7 +80,8 @@ std::uint16_t McapWriter::add_channel(const std::string& topic, const std::strin
   return id;
 }
 
-void McapWriter::add_message(std::uint16_t channel, std::uint64_t log_time_ns, const std::string& data) {
+void McapWriter::add_message(int channel_id, std::uint64_t log_time_ns, const std::string& data) {
+  const auto channel = static_cast<std::uint16_t>(channel_id);
   const std::string message = record(5, FieldWriter()
                                             .number(channel)
                                             .number(std::uint32_t{1})

@@ -61,8 +61,8 @@ class McapWriter {
  public:
   explicit McapWriter(McapLayout layout = {});
 
-  std::uint16_t add_channel(const std::string& topic, const std::string& schema, const std::string& encoding);
-  void add_message(std::uint16_t channel, std::uint64_t log_time_ns, const std::string& data);
+  int add_channel(const std::string& topic, const std::string& schema, const std::string& encoding);
+  void add_message(int channel, std::uint64_t log_time_ns, const std::string& data);
   /// Writes the chunk so far, even if it is not full.
   void end_chunk();
   /// A record as it stands, outside of chunks.
