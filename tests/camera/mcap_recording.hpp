@@ -60,7 +60,12 @@ class McapRecordings : public Recordings {
     return out;
   }
 
-  std::string spec_of(const std::string& file) { return "mcap:" + folder_.write("bag.mcap", file).string(); }
+  /// A new file each time: file systems take one that is emptied and written again for precious, and wait for
+  /// the disk.
+  std::string spec_of(const std::string& file) {
+    std::filesystem::remove(folder_.path() / "bag.mcap");
+    return "mcap:" + folder_.write("bag.mcap", file).string();
+  }
   std::unique_ptr<StereoSource> open_file(const std::string& file, const std::string& topics = "") {
     return open_source({.spec = spec_of(file) + topics});
   }
