@@ -43,16 +43,16 @@ void add_doubles(std::vector<double>& values, const ProtobufField& field) {
 
 /// The numbers of the fields are those of foxglove/CameraCalibration.proto.
 std::optional<RosCameraInfo> read_foxglove_info(ByteView message) {
-  enum : std::uint8_t { width = 2, height = 3, model = 4, D = 5, K = 6, R = 7, P = 8 };
+  enum : std::uint8_t { width = 2, height = 3, model = 4, d = 5, k = 6, r = 7, p = 8 };
   RosCameraInfo info;
   while (const auto field = next_field(message)) {
     if (field->number == width) info.width_px = static_cast<std::uint32_t>(field->value);
     if (field->number == height) info.height_px = static_cast<std::uint32_t>(field->value);
     if (field->number == model) info.distortion_model.assign(field->bytes.begin(), field->bytes.end());
-    if (field->number == D) add_doubles(info.distortion_coefficients, *field);
-    if (field->number == K) add_doubles(info.camera_matrix, *field);
-    if (field->number == R) add_doubles(info.rectification_matrix, *field);
-    if (field->number == P) add_doubles(info.projection_matrix, *field);
+    if (field->number == d) add_doubles(info.distortion_coefficients, *field);
+    if (field->number == k) add_doubles(info.camera_matrix, *field);
+    if (field->number == r) add_doubles(info.rectification_matrix, *field);
+    if (field->number == p) add_doubles(info.projection_matrix, *field);
   }
   return message.empty() ? std::optional(std::move(info)) : std::nullopt;
 }
