@@ -98,7 +98,8 @@ TEST_F(McapRecordings, MessagesOutOfOrderComeInOrder) {
     McapWriter out = writer({.messages_per_chunk = 3});
     std::vector<std::pair<double, std::pair<int, int>>> order;  // place in the file; side and frame
     for (int i = 0; i < 20; ++i)
-      for (const int side : {1, 2}) order.push_back({i + 2.5 * static_cast<double>(random()) / 4294967295.0, {side, i}});
+      for (const int side : {1, 2})
+        order.push_back({i + 2.5 * static_cast<double>(random()) / 4294967295.0, {side, i}});
     std::sort(order.begin(), order.end());
     std::int64_t log_time = kStart;
     for (const auto& [place, message] : order) {

@@ -70,7 +70,7 @@ std::string McapWriter::record(std::uint8_t opcode, const std::string& content) 
 }
 
 int McapWriter::add_channel(const std::string& topic, const std::string& schema,
-                                      const std::string& encoding) {
+                            const std::string& encoding) {
   const auto id = ++num_channels_;
   const std::string records =
       record(3, FieldWriter().number(id).text(schema).text("ros2msg").text("# a comment").bytes()) +

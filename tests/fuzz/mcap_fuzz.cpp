@@ -1,5 +1,5 @@
-// An MCAP file: opened as it is, every frame read, sought and read again. In chunks without checksums, so that
-// what is changed inside is seen.
+// An MCAP file: opened as it is, every frame read, sought and read again. In chunks without checksums, so
+// that what is changed inside is seen.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -20,7 +20,8 @@ void read_frames(flogmap::StereoSource& source) {
     const auto frame = source.next();
     if (!frame) return;
     const bool later = i == 0 || frame->timestamp_ns > last_ns;
-    const bool same_size = frame->left.width == frame->right.width && frame->left.height == frame->right.height;
+    const bool same_size =
+        frame->left.width == frame->right.width && frame->left.height == frame->right.height;
     if (!later || !same_size || frame->left.empty()) std::abort();
     last_ns = frame->timestamp_ns;
   }
