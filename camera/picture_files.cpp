@@ -58,6 +58,15 @@ Picture picture_from(const cv::Mat& decoded) {
 
 }  // namespace
 
+ReadPicture decode_picture(const Bytes& bytes) {
+  if (const std::string kind = truncated_kind(bytes); !kind.empty()) return {{}, kind};
+  const cv::Mat decoded = decode(bytes);
+  const bool usable = !decoded.empty() && (decoded.depth() == CV_8U || decoded.depth() == CV_16U) &&
+                      (decoded.channels() == 1 || decoded.channels() == 3 || decoded.channels() == 4);
+  if (!usable) return {{}, "not a readable picture (PNG, JPEG or PGM with 8 or 16 bits)"};
+  return {picture_from(decoded), {}};
+}
+
 ReadPicture read_picture(const fs::path& file) {
   std::error_code unknown;
   if (fs::exists(file, unknown) && !fs::is_regular_file(file, unknown))  // a folder, or a device without end
@@ -66,12 +75,9 @@ ReadPicture read_picture(const fs::path& file) {
   if (!in) return {{}, file.string() + ": cannot be opened"};
   const Bytes bytes{std::istreambuf_iterator<char>(in), {}};
   if (bytes.empty()) return {{}, file.string() + ": empty file"};
-  if (const std::string kind = truncated_kind(bytes); !kind.empty()) return {{}, file.string() + ": " + kind};
-  const cv::Mat decoded = decode(bytes);
-  const bool usable = !decoded.empty() && (decoded.depth() == CV_8U || decoded.depth() == CV_16U) &&
-                      (decoded.channels() == 1 || decoded.channels() == 3 || decoded.channels() == 4);
-  if (!usable) return {{}, file.string() + ": not a readable picture (PNG, JPEG or PGM with 8 or 16 bits)"};
-  return {picture_from(decoded), {}};
+  ReadPicture result = decode_picture(bytes);
+  if (!result.problem.empty()) result.problem = file.string() + ": " + result.problem;
+  return result;
 }
 
 bool write_picture(const fs::path& file, const Picture& picture) {

@@ -12,6 +12,7 @@
 #include "camera/images_source.hpp"
 #include "camera/kitti_source.hpp"
 #include "camera/live/live_source.hpp"
+#include "camera/mcap_source.hpp"
 #include "camera/simulated_source.hpp"
 #include "camera/simulation/scene_json.hpp"
 #include "camera/video_source.hpp"
@@ -72,6 +73,18 @@ std::unique_ptr<StereoSource> open_side_by_side(const SourceOptions& options, co
                      .calibration = std::move(calibration)});
 }
 
+std::unique_ptr<StereoSource> open_recorded_topics(const SourceOptions& options, const std::string& where) {
+  McapRecording recording{.spec = options.spec,
+                          .where = where,
+                          .loop = options.loop,
+                          .max_skew_ms = options.max_skew_ms,
+                          .reads_calibration = needs_folders_calibration(options)};
+  if (!options.calibration_file.empty()) recording.calibration = read_calibration(options.calibration_file);
+  std::unique_ptr<StereoSource> source = open_mcap(std::move(recording));
+  if (const auto calibration = source->calibration()) check_baseline(*calibration);
+  return source;
+}
+
 std::unique_ptr<StereoSource> open_cameras(const SourceOptions& options, const std::string& where) {
   LiveSpec live{.spec = options.spec, .where = where, .calibration = std::nullopt, .live = {}};
   if (!options.calibration_file.empty()) live.calibration = read_calibration(options.calibration_file);
@@ -95,6 +108,7 @@ struct Kind {
 constexpr std::array kKinds{
     Kind{"euroc", "DIR", open_euroc},
     Kind{"kitti", "DIR", open_kitti},
+    Kind{"mcap", "FILE[,LEFT_TOPIC,RIGHT_TOPIC]", open_recorded_topics},
     Kind{"images", "LEFT_GLOB,RIGHT_GLOB", open_images},
     Kind{"video", "LEFT,RIGHT", open_videos},
     Kind{"sbs", "FILE", open_side_by_side},

@@ -19,7 +19,7 @@ struct SourceOptions {
   // live cameras
   int camera_width_px = 0, camera_height_px = 0;  // where no calibration says; 0: 640x480
   double camera_rate_hz = 20;
-  double max_skew_ms = 5;  // pairs taken further apart are dropped
+  double max_skew_ms = 5;  // pairs taken further apart are dropped; of recorded topics, too
   double exposure_us = 0;  // 0: automatic; both cameras alike
   double gain = 0;         // 0: automatic
 };

@@ -157,7 +157,7 @@ void add_source_options(OptionTable& table, Options& options) {
                           std::to_string(options.source.camera_height_px);
                  }});
   table.number("max-skew-ms", "MS", options.source.max_skew_ms, 0.01, 1000,
-               "live: pairs taken further apart are dropped");
+               "live and mcap: pairs taken further apart are dropped");
   table.number("exposure-us", "US", options.source.exposure_us, 0, 1e6,
                "live: of both cameras; 0 = automatic, the right one like the left one");
   table.number("gain", "FACTOR", options.source.gain, 0, 1000, "live: likewise");
