@@ -138,9 +138,12 @@ HandLevel CaptureControl::level_of_next_map() {
   return level_;
 }
 
+bool CaptureControl::reads() const {
+  return !ended_generation_ && (state_ == SessionState::running || steps_ > 0 || is_on_its_way());
+}
+
 bool CaptureControl::has_work() const {
-  const bool reads = !ended_generation_ && (state_ == SessionState::running || steps_ > 0 || is_on_its_way());
-  return stop_ || tell_ || relevel_ || reset_ || seek_s_ || reads;
+  return stop_ || tell_ || relevel_ || reset_ || seek_s_ || reads();
 }
 
 CaptureTurn CaptureControl::await_turn() {
@@ -162,9 +165,12 @@ CaptureTurn CaptureControl::await_turn() {
     return {.kind = CaptureTurn::Kind::seek, .position_s = position_s};
   }
   if (std::exchange(relevel_, false)) return {.kind = CaptureTurn::Kind::level};
-  if (std::exchange(tell_, false)) return {.kind = CaptureTurn::Kind::tell};
-  if (state_ == SessionState::paused && !is_on_its_way()) --steps_;
-  return {};
+  if (reads()) {
+    if (state_ == SessionState::paused && !is_on_its_way()) --steps_;
+    return {};
+  }
+  tell_ = false;
+  return {.kind = CaptureTurn::Kind::tell};
 }
 
 CaptureControl::Clock::time_point CaptureControl::due(std::int64_t timestamp_ns) {

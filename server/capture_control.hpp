@@ -69,6 +69,7 @@ class CaptureControl final : public SessionControl {
   using Clock = std::chrono::steady_clock;
   void come_to_rest();
   [[nodiscard]] bool is_on_its_way() const;
+  [[nodiscard]] bool reads() const;
   [[nodiscard]] bool has_work() const;
   [[nodiscard]] Clock::time_point due(std::int64_t timestamp_ns);
   ControlResult illegal(const std::string& detail) const { return {ControlOutcome::illegal, detail}; }

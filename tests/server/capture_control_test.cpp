@@ -40,7 +40,7 @@ TEST(CaptureControl, ASimulatedWalkHasNoEndButARateAndAPause) {
   walk.num_frames.reset();
   CaptureControl control = running(walk);
   control.started();
-  EXPECT_EQ(control.change_playback({.rate = 2, .paused = true}).outcome, ControlOutcome::done);
+  EXPECT_EQ(control.change_playback({.position_s = {}, .rate = 2, .paused = true}).outcome, ControlOutcome::done);
   control.frame_delivered(7 * kSecond);
   EXPECT_FALSE(control.playback().seekable);
   EXPECT_TRUE(control.playback().paused);
@@ -68,7 +68,7 @@ TEST(CaptureControl, SoughtForwardsWhilePausedItGoesThereAndRests) {
   control.frame_delivered(6 * kSecond);
   control.pause();
   EXPECT_TRUE(read_until_rest(control, 2).empty());
-  control.change_playback({.position_s = 5});
+  control.change_playback({.position_s = 5, .rate = {}, .paused = {}});
   EXPECT_EQ(read_until_rest(control, 2), (std::vector<std::int64_t>{2, 3, 4, 5}));
   control.step();
   EXPECT_EQ(read_until_rest(control, 6), (std::vector<std::int64_t>{6}));
@@ -78,7 +78,7 @@ TEST(CaptureControl, SoughtForwardsWhilePausedItGoesThereAndRests) {
 TEST(CaptureControl, APauseEndsASeekOnItsWay) {
   CaptureControl control = running(recording());
   control.started();
-  control.change_playback({.position_s = 8});
+  control.change_playback({.position_s = 8, .rate = {}, .paused = {}});
   EXPECT_EQ(control.await_turn().kind, CaptureTurn::Kind::seek);
   control.hurry_until(13 * kSecond);
   control.frame_delivered(7 * kSecond);
