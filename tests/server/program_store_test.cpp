@@ -71,5 +71,39 @@ TEST(ProgramStore, AMapWhoseTilesAreBehindItsPathIsBuiltAnewAtTheNextStart) {
   EXPECT_GE(after.tiles.size(), before.tiles.size());
 }
 
+TEST(ProgramStore, WhoReadsItsLogMayLeave) {
+  const TemporaryFolder folder = TemporaryFolder::in_memory();
+  RunningProgram program(mapping_into(folder / "map.flog", folder.path()));
+  program.hang_up();
+  for (int i = 0; i < 5; ++i) {  // each is told in the log
+    EXPECT_EQ(http(program.port(), "POST", "/api/v1/session:reset").status, 200);
+    std::this_thread::sleep_for(milliseconds(200));
+  }
+  EXPECT_EQ(program.end(SIGTERM), 0);
+  EXPECT_TRUE(holds_a_map(folder / "map.flog"));
+}
+
+TEST(ProgramStore, RulesOverWhatIsStoredFollowTheOptionsOfEachStart) {
+  const TemporaryFolder folder = TemporaryFolder::in_memory();
+  std::vector<std::string> arguments = mapping_into(folder / "map.flog", folder.path());
+  const auto live_map = [](const RunningProgram& program) {
+    return nlohmann::json::parse(http(program.port(), "GET", "/api/v1/maps/live").body);
+  };
+  std::uint64_t revision = 0;
+  {
+    RunningProgram program(arguments);
+    ASSERT_TRUE(wait_until([&] { return revision_of(program) > 3; }));
+    EXPECT_EQ(live_map(program)["min_rays"], 8);
+    EXPECT_EQ(program.end(SIGTERM), 0);
+    revision = load_map(folder / "map.flog").revision;
+  }
+  arguments.insert(arguments.end(), {"--min-rays", "3", "--full-confidence-rays", "50"});
+  RunningProgram program(arguments);
+  EXPECT_GT(revision_of(program), revision);  // pictures that viewers keep were made by the old rules
+  EXPECT_EQ(live_map(program)["min_rays"], 3);
+  for (const auto& layer : live_map(program)["layers"]) EXPECT_EQ(layer["full_confidence_rays"], 50);
+  EXPECT_EQ(program.end(SIGTERM), 0);
+}
+
 }  // namespace
 }  // namespace flogmap

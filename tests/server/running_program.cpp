@@ -73,6 +73,7 @@ void RunningProgram::listen(int pipe) {
       log_.push_back(rest.substr(0, end));
     }
     more_.notify_all();
+    if (hung_up_) break;
   }
   ::close(pipe);
   const std::scoped_lock lock(mutex_);

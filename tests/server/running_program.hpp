@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -30,6 +31,9 @@ class RunningProgram {
   /// Sends a signal (0: none) and waits; the exit code, or -signal if it was killed.
   int end(int signal);
 
+  /// Closes the pipe that it writes its log to, after the next line.
+  void hang_up() { hung_up_ = true; }
+
   /// What it wrote to stderr so far, a line each.
   [[nodiscard]] std::vector<std::string> log() const;
   /// Waits until a line of the log holds this; false after `patience`.
@@ -44,6 +48,7 @@ class RunningProgram {
   std::condition_variable more_;
   std::vector<std::string> log_;
   bool closed_ = false;
+  std::atomic<bool> hung_up_ = false;
   std::thread listener_;
 };
 
