@@ -28,6 +28,7 @@ flogmap_target(flogmap EXECUTABLE
     commands/map.cpp
     commands/mapping_session.cpp
     commands/merge.cpp
+    commands/output_path.cpp
     commands/progress_bar.cpp
     commands/record.cpp
     commands/serve.cpp
