@@ -17,6 +17,7 @@ flogmap_target(live_desk SOURCES commands/live_desk.cpp PUBLIC board_calibration
 flogmap_target(flogmap EXECUTABLE
   SOURCES
     main.cpp
+    command_line.cpp
     commands/calib_check.cpp
     commands/calibrate.cpp
     commands/cameras.cpp
