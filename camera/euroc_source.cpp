@@ -18,22 +18,54 @@ struct TimedFile {
   fs::path file;
 };
 
-/// The rows of one camera's data.csv, in order; rows that are malformed or step back in time are skipped.
+/// Why this is no time in nanoseconds.
+std::string problem_of(const std::string& time) {
+  const bool digits =
+      !time.empty() && time.find_first_not_of("0123456789", time[0] == '-' ? 1 : 0) == std::string::npos;
+  constexpr std::size_t kShown = 24;
+  const std::string shown = time.size() > kShown ? time.substr(0, kShown) + "..." : time;
+  return digits ? "time " + shown + " is out of range; allowed: nanoseconds in 64 bits"
+                : "not 'timestamp [ns],filename'";
+}
+
+/// Nothing is lost by sorting rows that stand in another order; of those of one time the first counts.
+void sort_by_time(std::vector<TimedFile>& files, const fs::path& csv, PicturePairList& list) {
+  const auto earlier = [](const TimedFile& a, const TimedFile& b) { return a.timestamp_ns < b.timestamp_ns; };
+  if (!std::is_sorted(files.begin(), files.end(), earlier)) {
+    std::stable_sort(files.begin(), files.end(), earlier);
+    list.assumed +=
+        (list.assumed.empty() ? "" : "; ") + csv.string() + ": rows were not in order of time and are sorted";
+  }
+  std::vector<TimedFile> each_once;
+  for (TimedFile& file : files) {
+    if (!each_once.empty() && file.timestamp_ns == each_once.back().timestamp_ns) {
+      list.skip(csv.string() + ": time " + std::to_string(file.timestamp_ns) + " stands there twice");
+    } else {
+      each_once.push_back(std::move(file));
+    }
+  }
+  files = std::move(each_once);
+}
+
+/// The rows of one camera's data.csv in order of time; malformed ones are skipped.
 std::vector<TimedFile> list_camera(const fs::path& camera, PicturePairList& list) {
   const fs::path csv = camera / "data.csv";
   std::vector<TimedFile> files;
+  std::string problem;
   for (const CsvRow& row : read_csv(csv)) {
     const std::string where = csv.string() + ":" + std::to_string(row.line);
     std::int64_t time = 0;
     if (row.fields.size() < 2 || !parse_number(row.fields[0], time) || row.fields[1].empty()) {
-      list.skip(where + ": not 'timestamp [ns],filename'");
-    } else if (!files.empty() && time <= files.back().timestamp_ns) {
-      list.skip(where + ": time does not increase");
+      problem = where + ": " + problem_of(row.fields[0]);
+      list.skip(problem);
     } else {
       files.push_back({time, camera / "data" / row.fields[1]});
     }
   }
-  if (files.empty()) throw std::runtime_error(csv.string() + ": lists no pictures");
+  if (files.empty())
+    throw std::runtime_error(csv.string() + ": lists no pictures" +
+                             (problem.empty() ? "" : "; last: " + problem));
+  sort_by_time(files, csv, list);
   return files;
 }
 

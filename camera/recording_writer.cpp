@@ -65,8 +65,13 @@ std::string sensor_yaml(const CameraIntrinsics& camera, const Eigen::Isometry3d&
   return out.str();
 }
 
+/// A name without a folder lies in the current one, which is there.
+void make_folder_of(const fs::path& file) {
+  if (file.has_parent_path()) fs::create_directories(file.parent_path());
+}
+
 void write_text(const fs::path& file, const std::string& text) {
-  fs::create_directories(file.parent_path());
+  make_folder_of(file);
   std::ofstream out(file, std::ios::binary);
   out << text << std::flush;
   if (!out) fail(file);
@@ -93,7 +98,7 @@ std::string seconds_text(std::int64_t timestamp_ns) {
 }
 
 void write_pfm(const fs::path& file, const Image<float>& image) {
-  fs::create_directories(file.parent_path());
+  make_folder_of(file);
   std::ofstream out(file, std::ios::binary);
   out << "Pf\n" << image.width << ' ' << image.height << "\n-1.0\n";
   for (int y = image.height - 1; y >= 0; --y) {
@@ -105,14 +110,17 @@ void write_pfm(const fs::path& file, const Image<float>& image) {
   if (!out.flush()) fail(file);
 }
 
+void RecordingWriter::require_free(const fs::path& folder) {
+  if (!fs::exists(folder / "mav0" / "cam0" / "data.csv")) return;
+  throw std::runtime_error(folder.string() + ": there is a recording already; choose another folder");
+}
+
 RecordingWriter::RecordingWriter(fs::path folder, const StereoCalibration& calibration, Options options)
     : folder_(std::move(folder)),
       left_from_body_(calibration.body_from_left.inverse()),
       options_(std::move(options)) {
   const fs::path cam0 = folder_ / "mav0" / "cam0", cam1 = folder_ / "mav0" / "cam1";
-  if (fs::exists(cam0 / "data.csv")) {
-    throw std::runtime_error(folder_.string() + ": there is a recording already; choose another folder");
-  }
+  require_free(folder_);
   std::error_code error;
   for (const fs::path& camera : {cam0, cam1}) fs::create_directories(camera / "data", error);
   if (error) throw std::runtime_error(folder_.string() + ": cannot be created: " + error.message());

@@ -25,6 +25,9 @@ class RecordingWriter {
     std::string about{};  // written to recording.json: where the pairs come from; empty: no such file
   };
 
+  /// Throws std::runtime_error if the folder holds a recording already.
+  static void require_free(const std::filesystem::path& folder);
+
   /// Throws std::runtime_error if the folder holds a recording already or cannot be written.
   RecordingWriter(std::filesystem::path folder, const StereoCalibration& calibration, Options options);
 

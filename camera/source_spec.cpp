@@ -49,8 +49,9 @@ std::unique_ptr<StereoSource> open_kitti(const SourceOptions& options, const std
 }
 
 std::unique_ptr<StereoSource> open_images(const SourceOptions& options, const std::string& where) {
-  (void)given_calibration(options);  // before anything else is looked for
-  return open_pairs(options, list_images(where, options.frame_rate_hz));
+  PicturePairList list = list_images(where, options.frame_rate_hz);
+  (void)given_calibration(options);  // needed only where there are pictures
+  return open_pairs(options, std::move(list));
 }
 
 std::unique_ptr<StereoSource> open_videos(const SourceOptions& options, const std::string& where) {

@@ -2,9 +2,11 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "server/command_line.hpp"
 #include "server/commands/commands.hpp"
 #include "server/option_table.hpp"
 
@@ -36,6 +38,9 @@ int complain(const std::string& message, int exit_code) {
 }
 
 int run(int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const Command& command : kCommands) names.emplace_back(command.name);
+  flogmap::check_first_word(argc > 1 ? argv[1] : "", names);
   CLI::App app("flogmap: two cameras in, a live map in any browser out.", "flogmap");
   app.set_version_flag("--version", "flogmap " FLOGMAP_VERSION);
   app.require_subcommand(1);
@@ -47,6 +52,8 @@ int run(int argc, char** argv) {
   }
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    return complain(flogmap::unexpected_words(app) + "; see flogmap COMMAND --help", 2);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     return complain(std::string(error.what()) + "; see flogmap --help, flogmap COMMAND --help", 2);
@@ -63,7 +70,9 @@ int main(int argc, char** argv) {
   // Whoever reads our lines may leave; that ends nobody's map.
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    return run(argc, argv);
+    const int exit_code = run(argc, argv);
+    if (flogmap::flush_output() || exit_code != 0) return exit_code;
+    return complain("standard output cannot be written; is the disk full?", 1);
   } catch (const flogmap::UsageError& error) {
     return complain(error.what(), 2);
   } catch (const std::exception& error) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -63,9 +64,13 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-json read_json(const std::string& path) {
+/// `named_by`: the option or variable that names the file.
+json read_json(const std::string& path, const std::string& named_by) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown))
+    throw UsageError(named_by + " " + path + ": is a folder; must be a JSON file of options");
   std::ifstream file(path);
-  if (!file) throw UsageError("--config: cannot read " + path);
+  if (!file) throw UsageError(named_by + " " + path + ": cannot be read; must be a JSON file of options");
   try {
     json document = json::parse(file, nullptr, true, true);
     if (!document.is_object()) throw UsageError(path + ": must be one JSON object of options");
@@ -160,10 +165,12 @@ void OptionTable::attach(CLI::App& app) {
 }
 
 void OptionTable::apply(const std::vector<std::string>& known_elsewhere) {
+  std::string named_by = "--config";
   if (config_file_.empty()) {
     if (const char* path = std::getenv("FLOGMAP_CONFIG")) config_file_ = path;
+    named_by = "environment: FLOGMAP_CONFIG";
   }
-  apply_file(known_elsewhere);
+  apply_file(known_elsewhere, named_by);
   apply_environment(known_elsewhere);
   for (const auto& [name, value] : from_command_line_) {
     try {
@@ -174,9 +181,9 @@ void OptionTable::apply(const std::vector<std::string>& known_elsewhere) {
   }
 }
 
-void OptionTable::apply_file(const std::vector<std::string>& known_elsewhere) {
+void OptionTable::apply_file(const std::vector<std::string>& known_elsewhere, const std::string& named_by) {
   if (config_file_.empty()) return;
-  const json document = read_json(config_file_);
+  const json document = read_json(config_file_, named_by);
   for (const auto& [key, value] : document.items()) {
     const std::string name = with_dashes(key);
     if (find(name) == nullptr) {

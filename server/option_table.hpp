@@ -95,7 +95,7 @@ class OptionTable {
 
  private:
   Option* find(const std::string& name);
-  void apply_file(const std::vector<std::string>& known_elsewhere);
+  void apply_file(const std::vector<std::string>& known_elsewhere, const std::string& named_by);
   void apply_environment(const std::vector<std::string>& known_elsewhere);
 
   std::vector<Option> options_;

@@ -22,6 +22,17 @@ std::string joined(const std::vector<double>& numbers) {
   return text;
 }
 
+std::vector<double> parse_layers(const std::string& text) {
+  GridSpec grid;
+  grid.layer_bounds_m = parse_numbers(text, 0);
+  try {
+    check(grid);
+  } catch (const std::exception&) {
+    throw UsageError("allowed: 2 to 65 heights in metres, each at least 0.001 above the one before");
+  }
+  return grid.layer_bounds_m;
+}
+
 SE3 parse_pose(const std::string& given) {
   const std::vector<double> n = parse_numbers(given, 7);
   const Eigen::Quaterniond q(n[6], n[3], n[4], n[5]);
@@ -65,7 +76,7 @@ void add_grid_options(OptionTable& table, Options& options) {
   table.add({.name = "layers",
              .value_name = "Z0,Z1,...",
              .help = "boundaries of the layers, metres above the floor; start 3-5 cm above it",
-             .parse = [&flog](const std::string& text) { flog.grid.layer_bounds_m = parse_numbers(text, 0); },
+             .parse = [&flog](const std::string& text) { flog.grid.layer_bounds_m = parse_layers(text); },
              .show = [&flog] { return joined(flog.grid.layer_bounds_m); }});
   table.number("max-range", "METRES", flog.max_range_m, 0.1, 1000,
                "farther points only say where it is free");
@@ -127,22 +138,24 @@ void parse_camera_size(std::string text, SourceOptions& source) {
 
 }  // namespace
 
+void add_seed_option(OptionTable& table, std::uint64_t& seed, const std::string& help) {
+  const auto parse = [&seed](const std::string& text) {
+    const double value = parse_numbers(text, 1)[0];
+    if (value < 0 || value > 4294967295.0 || value != std::floor(value)) {
+      throw UsageError("allowed: whole numbers from 0 to 4294967295");
+    }
+    seed = static_cast<std::uint64_t>(value);
+  };
+  table.add({.name = "seed", .value_name = "N", .help = help, .parse = parse, .show = [&seed] {
+               return std::to_string(seed);
+             }});
+}
+
 void add_source_options(OptionTable& table, Options& options) {
   table.text("source", "SPEC", options.source.spec,
              "kind:where; kinds: " + source_kinds() + "; for instance euroc:DIR or sim:room");
   table.text("calibration", "FILE", options.source.calibration_file, "instead of what the source carries");
-  table.add({.name = "seed",
-             .value_name = "N",
-             .help = "of everything random; the same seed gives the same map",
-             .parse =
-                 [&options](const std::string& text) {
-                   const double value = parse_numbers(text, 1)[0];
-                   if (value < 0 || value > 4294967295.0 || value != std::floor(value)) {
-                     throw UsageError("allowed: whole numbers from 0 to 4294967295");
-                   }
-                   options.source.seed = static_cast<std::uint64_t>(value);
-                 },
-             .show = [&options] { return std::to_string(options.source.seed); }});
+  add_seed_option(table, options.source.seed, "of everything random; the same seed gives the same map");
   table.number(
       "frame-rate", "HZ", options.source.frame_rate_hz, 0.01, 1000,
       "of pictures whose times nothing says: kitti: without times.txt, images: without times in names");
@@ -201,8 +214,12 @@ std::vector<std::string> all_option_names() {
   add_mapping_options(table, options);
   add_serve_options(table, options);
   std::vector<std::string> names = table.names();
-  names.insert(names.end(), {"out", "duration", "pictures", "left", "right", "pattern", "board", "square-mm",
-                             "marker-mm", "tag-gap", "dictionary", "model", "serve"});
+  names.insert(
+      names.end(),
+      {"b-in-a",       "board",     "depth-views", "dictionary", "duration",   "format",    "frames",
+       "ground-truth", "json",      "layer",       "left",       "map",        "marker-mm", "max-frames",
+       "model",        "out",       "pattern",     "pictures",   "right",      "scale",     "scene",
+       "serve",        "square-mm", "tag-gap",     "tolerance",  "trajectory", "truth"});
   return names;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -36,6 +37,8 @@ struct Options {
 };
 
 void add_source_options(OptionTable& table, Options& options);
+/// A part of the source's, and of other commands that draw lots.
+void add_seed_option(OptionTable& table, std::uint64_t& seed, const std::string& help);
 void add_stereo_options(OptionTable& table, StereoOptions& stereo);
 void add_mapping_options(OptionTable& table, Options& options);
 /// Of every command that serves; add_serve_options() takes them in.

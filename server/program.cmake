@@ -17,6 +17,7 @@ flogmap_target(live_desk SOURCES commands/live_desk.cpp PUBLIC board_calibration
 flogmap_target(flogmap EXECUTABLE
   SOURCES
     main.cpp
+    command_line.cpp
     commands/calib_check.cpp
     commands/calibrate.cpp
     commands/cameras.cpp
@@ -28,6 +29,7 @@ flogmap_target(flogmap EXECUTABLE
     commands/map.cpp
     commands/mapping_session.cpp
     commands/merge.cpp
+    commands/output_path.cpp
     commands/progress_bar.cpp
     commands/record.cpp
     commands/serve.cpp

@@ -35,13 +35,25 @@ void append_file(const std::string& path, std::vector<AccessToken>& tokens) {
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
     std::istringstream words(line.substr(0, line.find('#')));
-    std::string role, secret;
+    std::string role, secret, more;
     if (!(words >> role)) continue;
     words >> secret;
     const std::string where = path + ":" + std::to_string(number);
+    if (words >> more)
+      refuse(where + ": more than 'view SECRET' or 'control SECRET'; a token holds no blanks");
     if (role != "view" && role != "control")
       refuse(where + ": role must be view or control, got '" + role + "'");
     tokens.push_back(token_of(role == "view" ? Role::view : Role::control, secret, where));
+  }
+}
+
+/// Who is told a secret for looking must not get control with it.
+void check_distinct(const std::vector<AccessToken>& tokens) {
+  for (const AccessToken& a : tokens) {
+    for (const AccessToken& b : tokens) {
+      if (a.role == Role::view && b.role == Role::control && a.secret == b.secret)
+        refuse("tokens: one secret is given for view and for control; each role needs its own");
+    }
   }
 }
 
@@ -58,6 +70,7 @@ std::vector<AccessToken> read_tokens(const std::string& path) {
   if (!path.empty() && tokens.empty()) refuse(path + ": holds no token; delete the option to serve without");
   append_environment("FLOGMAP_VIEW_TOKEN", Role::view, tokens);
   append_environment("FLOGMAP_CONTROL_TOKEN", Role::control, tokens);
+  check_distinct(tokens);
   return tokens;
 }
 

@@ -1,5 +1,6 @@
 // Options of the commands that serve.
 #include <cmath>
+#include <regex>
 #include <sstream>
 
 #include "server/options.hpp"
@@ -7,14 +8,35 @@
 namespace flogmap {
 namespace {
 
-/// Words separated by commas.
+/// A name or address with or without a port: "robot.lan", "10.0.0.7:8080", "[fe80::1]:8080".
+bool is_host(const std::string& text) {
+  static const std::regex kHost(R"(([A-Za-z0-9._-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?)");
+  return std::regex_match(text, kHost);
+}
+
+void check_host(const std::string& text) {
+  if (!is_host(text)) throw UsageError("'" + text + "' is no host; allowed: NAME or NAME:PORT, as robot.lan");
+}
+
+void check_origin(const std::string& text) {
+  static const std::regex kScheme("[a-z][a-z0-9+.-]*://");
+  std::smatch scheme;
+  const bool begins = std::regex_search(text, scheme, kScheme, std::regex_constants::match_continuous);
+  if (!begins || !is_host(scheme.suffix()))
+    throw UsageError("'" + text +
+                     "' is no origin; allowed: SCHEME://HOST[:PORT] without a path, as https://robot.lan");
+}
+
+/// Words separated by commas, each as `check` allows.
 Option list_option(const std::string& name, std::vector<std::string>& target, const std::string& value_name,
-                   const std::string& help) {
-  const auto parse = [&target](const std::string& given) {
+                   const std::string& help, void (*check)(const std::string&)) {
+  const auto parse = [&target, check](const std::string& given) {
     target.clear();
     std::stringstream words(given);
     for (std::string word; std::getline(words, word, ',');) {
-      if (!word.empty()) target.push_back(word);
+      if (word.empty()) continue;
+      check(word);
+      target.push_back(word);
     }
   };
   const auto show = [&target] {
@@ -32,9 +54,9 @@ void add_access_options(OptionTable& table, Options& options) {
              "lines \"view SECRET\" and \"control SECRET\"; or FLOGMAP_VIEW_TOKEN, FLOGMAP_CONTROL_TOKEN");
   table.flag("insecure-no-auth", serve.insecure_no_auth, "serve other machines without a token");
   table.add(list_option("allow-host", serve.allow_hosts, "NAME,...",
-                        "names by which browsers may reach this server"));
-  table.add(
-      list_option("allow-origin", serve.allow_origins, "ORIGIN,...", "pages elsewhere that may use it"));
+                        "names by which browsers may reach this server", check_host));
+  table.add(list_option("allow-origin", serve.allow_origins, "ORIGIN,...", "pages elsewhere that may use it",
+                        check_origin));
   table.text("tls-cert", "FILE", serve.tls_cert, "PEM certificate chain; with --tls-key serves https");
   table.text("tls-key", "FILE", serve.tls_key, "PEM private key");
   table.integer("max-connections", "N", serve.max_connections, 1, 65535, "at a time");

@@ -1,6 +1,8 @@
 #include "camera/board_calibration/board.hpp"
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 
 namespace flogmap {
 namespace {
@@ -50,8 +52,10 @@ void check(const BoardSpec& spec) {
   constexpr int kMost = 100;
   const int least = spec.pattern == BoardPattern::apriltag ? 2 : 3;
   const std::string counts = std::to_string(least) + " to " + std::to_string(kMost);
-  require(spec.columns >= least && spec.columns <= kMost, "board: columns", spec.columns, counts);
-  require(spec.rows >= least && spec.rows <= kMost, "board: rows", spec.rows, counts);
+  if (std::min(spec.columns, spec.rows) < least || std::max(spec.columns, spec.rows) > kMost) {
+    throw std::runtime_error("board: " + std::to_string(spec.columns) + "x" + std::to_string(spec.rows) +
+                             ": allowed are " + counts + " columns and rows");
+  }
   require(spec.square_m >= 1e-4 && spec.square_m <= 10, "side of a square in metres", spec.square_m,
           "0.0001 to 10");
   require(spec.marker_share > 0.1 && spec.marker_share < 1, "marker / square", spec.marker_share, "0.1 to 1");

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "camera/picture_files.hpp"
 #include "camera/recording_writer.hpp"
@@ -61,6 +62,32 @@ void write_depth(const SimulatedSource& source, const fs::path& folder, std::int
   write_pfm(folder / "disparity" / name, image);
 }
 
+/// Takes back an unfinished recording, so that its name is free again.
+class Unfinished {
+ public:
+  explicit Unfinished(fs::path folder) : folder_(std::move(folder)) {
+    std::error_code error;
+    was_empty_ = !fs::exists(folder_, error) || fs::is_empty(folder_, error);
+  }
+  ~Unfinished() {
+    std::error_code error;
+    if (finished_) return;
+    if (!was_empty_) {
+      for (const char* camera : {"cam0", "cam1"}) fs::remove(folder_ / "mav0" / camera / "data.csv", error);
+      return;
+    }
+    for (const char* part : {"mav0", "truth", "depth", "disparity", "groundtruth.tum"})
+      fs::remove_all(folder_ / part, error);
+  }
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+  void finished() { finished_ = true; }
+
+ private:
+  fs::path folder_;
+  bool was_empty_ = false, finished_ = false;
+};
+
 }  // namespace
 
 std::int64_t recording_length(const Scene& scene, const SimulationOptions& options) {
@@ -76,6 +103,8 @@ void simulate_recording(const Scene& scene, const fs::path& folder, const Simula
   Scene bounded = scene;
   bounded.num_frames = all;
   SimulatedSource source("sim:" + scene.name, bounded, options.seed);
+  RecordingWriter::require_free(folder);
+  Unfinished unfinished(folder);
   RecordingWriter writer(folder, *source.calibration(), {.compress = true, .rate_hz = scene.rate_hz});
   SeenCells seen(scene.truth);
   const std::int64_t depth_every = std::max<std::int64_t>(1, all / std::max(1, options.num_depth_views));
@@ -92,6 +121,7 @@ void simulate_recording(const Scene& scene, const fs::path& folder, const Simula
     if (progress) progress(writer.num_written() + source.skipped().count, all);
   }
   write_truth(scene, folder, seen, end_s);
+  unfinished.finished();
 }
 
 }  // namespace flogmap

@@ -19,7 +19,9 @@ struct SimulationOptions {
 ///   truth/layer_<k>.png, .json  occupancy at the end of the recording
 ///   truth/seen_<k>.png, surface_<k>.png  what the camera could see of a layer; and where it saw a surface
 ///   depth/<time>.pfm            Z of the left camera [m];  disparity/<time>.pfm [px]
-/// `progress` is told frames done and in all. Throws std::runtime_error naming what cannot be written.
+/// `progress` is told frames done and in all. Throws std::runtime_error naming what cannot be written, and
+/// what `progress` throws: then nothing of the recording stays in a folder that was new or empty, and of any
+/// other only pictures that no list names.
 void simulate_recording(const Scene& scene, const std::filesystem::path& folder,
                         const SimulationOptions& options,
                         const std::function<void(std::int64_t done, std::int64_t all)>& progress);

@@ -121,9 +121,16 @@ void measure_drift(const std::vector<PosePair>& pairs, TrajectoryError& error) {
 
 TrajectoryError evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
   const bool timed = estimate.timed && truth.timed;
+  if (estimate.timed != truth.timed && estimate.poses.size() != truth.poses.size()) {
+    throw std::runtime_error(
+        std::to_string(estimate.poses.size()) + " estimated and " + std::to_string(truth.poses.size()) +
+        " true poses, of which only the " + (truth.timed ? "true" : "estimated") +
+        " ones have times: which belong together cannot be told; needed is a times.txt " +
+        "beside KITTI poses, or TUM");
+  }
   const auto pairs = timed ? pairs_by_time(estimate, truth) : pairs_by_number(estimate, truth);
   if (pairs.size() < 3) {
-    throw std::runtime_error("trajectory: only " + std::to_string(pairs.size()) +
+    throw std::runtime_error("only " + std::to_string(pairs.size()) +
                              " poses of the estimate have a true pose within 10 ms; at least 3 are needed");
   }
   TrajectoryError error;

@@ -26,6 +26,11 @@ struct Trajectory {
 /// what is allowed.
 [[nodiscard]] Trajectory read_trajectory(const std::filesystem::path& file);
 
+/// The same for a true path: KITTI poses get the times that stand in times.txt, beside them or, of
+/// poses/NN.txt, in sequences/NN/. Where there is none they stay without. Throws std::runtime_error likewise,
+/// also where there are not as many times as poses.
+[[nodiscard]] Trajectory read_true_trajectory(const std::filesystem::path& file);
+
 struct TrajectoryError {
   int num_poses = 0;         // of the estimate that found a partner
   double path_length_m = 0;  // of the truth
@@ -40,9 +45,9 @@ struct TrajectoryError {
   SE3 truth_from_estimate = SE3::Identity();  // the alignment
 };
 
-/// Compares by time: each estimated pose with the true one that is nearest in time, at most 10 ms away. A
-/// true trajectory without times is taken pose by pose. Throws std::runtime_error if fewer than three pairs
-/// are found.
+/// Compares by time: each estimated pose with the true one that is nearest in time, at most 10 ms away.
+/// Without times on both sides they are taken pose by pose. Throws std::runtime_error if fewer than three
+/// pairs are found, or if only one side has times and the other not as many poses.
 [[nodiscard]] TrajectoryError evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth);
 
 }  // namespace flogmap

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mapping/odometry/trajectory_error.hpp"
 
@@ -125,7 +126,48 @@ TimedPose parse(const Line& line, Kind kind, std::int64_t number) {
   return {number, kitti_pose(line, v)};
 }
 
+/// times.txt of a KITTI sequence: beside the poses, or in sequences/NN/ beside the folder of NN.txt.
+std::optional<std::filesystem::path> times_of(const std::filesystem::path& poses) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::absolute(poses).parent_path();
+  for (const fs::path& file : {folder / "times.txt", folder / poses.stem() / "times.txt",
+                               folder.parent_path() / "sequences" / poses.stem() / "times.txt"}) {
+    if (fs::is_regular_file(file)) return file;
+  }
+  return std::nullopt;
+}
+
+/// Seconds, one a line, rising.
+std::vector<std::int64_t> read_times(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::vector<std::int64_t> times;
+  Line line{file, 0, {}};
+  while (std::getline(stream, line.text)) {
+    ++line.number;
+    if (is_comment(line.text)) continue;
+    const std::int64_t time_ns = nanoseconds_of(line, words_of(line.text).front());
+    if (!times.empty() && time_ns <= times.back()) fail(line, "times must increase");
+    times.push_back(time_ns);
+  }
+  return times;
+}
+
 }  // namespace
+
+Trajectory read_true_trajectory(const std::filesystem::path& file) {
+  Trajectory trajectory = read_trajectory(file);
+  const auto times_file = trajectory.timed ? std::nullopt : times_of(file);
+  if (!times_file) return trajectory;
+  const std::vector<std::int64_t> times = read_times(*times_file);
+  if (times.size() != trajectory.poses.size()) {
+    throw std::runtime_error(times_file->string() + ": has " + std::to_string(times.size()) + " times, but " +
+                             file.string() + " " + std::to_string(trajectory.poses.size()) +
+                             " poses; one line for each is needed");
+  }
+  for (std::size_t i = 0; i < times.size(); ++i) trajectory.poses[i].timestamp_ns = times[i];
+  trajectory.timed = true;
+  return trajectory;
+}
 
 Trajectory read_trajectory(const std::filesystem::path& file) {
   std::ifstream stream(file);

@@ -83,11 +83,11 @@ RunCommand add_calib(CLI::App& app) {
   };
   auto state = std::make_shared<State>();
   CLI::App* check = app.add_subcommand("check", "dialect, rows, mix-ups and time skew of a calibration");
-  app.require_subcommand(1);
   add_source_options(state->table, state->options);
   state->table.attach(*check);
   check->footer("Example: flogmap calib check --source euroc:/data/MH_01 --calibration mine.yaml");
-  return [state] {
+  return [state, check] {
+    if (!check->parsed()) throw UsageError("calib: what to do is missing; allowed: check");
     state->table.apply(all_option_names());
     return check_calibration(state->options.source);
   };

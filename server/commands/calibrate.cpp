@@ -1,6 +1,7 @@
 // flogmap calibrate: pictures of a board in, from files or from any source, a stereo calibration and a
 // verdict out.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "server/commands/commands.hpp"
 #include "server/commands/interrupt_watcher.hpp"
 #include "server/commands/live_desk.hpp"
+#include "server/commands/output_path.hpp"
 #include "server/commands/progress_bar.hpp"
 #include "server/commands/serving.hpp"
 #include "server/commands/stored_control.hpp"
@@ -29,6 +31,7 @@ namespace flogmap {
 namespace {
 
 constexpr double kMmPerM = 1000;
+constexpr int kLeastBoard = 2, kMostBoard = 100;
 
 struct CalibrateArguments {
   std::string left, right, out;
@@ -43,8 +46,14 @@ struct CalibrateArguments {
 void parse_board(const std::string& text, BoardSpec& board) {
   const std::size_t x = text.find('x');
   if (x == std::string::npos) throw UsageError("must be COLUMNSxROWS, for instance 9x6");
-  board.columns = static_cast<int>(parse_numbers(text.substr(0, x), 1)[0]);
-  board.rows = static_cast<int>(parse_numbers(text.substr(x + 1), 1)[0]);
+  const std::vector<double> size = parse_numbers(text.substr(0, x) + "," + text.substr(x + 1), 2);
+  for (const double number : size) {
+    if (number < kLeastBoard || number > kMostBoard || number != std::floor(number))
+      throw UsageError(
+          "allowed: COLUMNSxROWS, each a whole number from 2 (not of tags: 3) to 100, for instance 9x6");
+  }
+  board.columns = static_cast<int>(size[0]);
+  board.rows = static_cast<int>(size[1]);
 }
 
 void add_options(OptionTable& table, CalibrateArguments& arguments) {
@@ -215,6 +224,7 @@ void require(const std::string& name, const std::string& value) {
 
 int calibrate(CalibrateArguments& arguments) {
   require("--out", arguments.out);
+  check_output_file(arguments.out);
   arguments.board.square_m = arguments.square_mm / kMmPerM;
   if (arguments.marker_mm > 0) arguments.board.marker_share = arguments.marker_mm / arguments.square_mm;
   if (!arguments.options.source.spec.empty()) return calibrate_source(arguments);
@@ -232,7 +242,7 @@ int calibrate(CalibrateArguments& arguments) {
   const CalibrationVerdict verdict = judge(result, sightings.names);
   std::ofstream out(arguments.out, std::ios::binary | std::ios::trunc);
   out << format_opencv(result.calibration) << std::flush;
-  if (!out) throw UsageError(arguments.out + ": cannot be written");
+  if (!out) throw std::runtime_error(arguments.out + ": cannot be written; is the disk full?");
   for (const std::string& problem : sightings.problems) std::printf("not used: %s\n", problem.c_str());
   print_verdict(verdict, arguments.out);
   return 0;

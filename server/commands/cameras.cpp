@@ -1,11 +1,12 @@
 // flogmap cameras: what libcamera sees.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <memory>
 #include <vector>
 
 #include "camera/live/camera_rig.hpp"
 #include "server/commands/commands.hpp"
-#include "server/option_table.hpp"
+#include "server/options.hpp"
 
 namespace flogmap {
 namespace {
@@ -37,7 +38,13 @@ int show_cameras() {
 
 RunCommand add_cameras(CLI::App& app) {
   app.footer("Left and right are told by id, never by order: --source libcamera:LEFT_ID,RIGHT_ID");
-  return [] { return show_cameras(); };
+  auto table =
+      std::make_shared<OptionTable>();  // none of its own; a shared config file is checked all the same
+  table->attach(app);
+  return [table] {
+    table->apply(all_option_names());
+    return show_cameras();
+  };
 }
 
 }  // namespace flogmap

@@ -4,11 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
 #include <string>
 
+#include "camera/calibration/calibration_checks.hpp"
 #include "camera/calibration/detect.hpp"
 #include "camera/low_bits.hpp"
 #include "camera/picture_files.hpp"
@@ -18,6 +20,7 @@
 #include "mapping/stereo/row_offset.hpp"
 #include "mapping/stereo/segment_filter.hpp"
 #include "server/commands/commands.hpp"
+#include "server/commands/output_path.hpp"
 #include "server/options.hpp"
 #include "server/picture_encoding.hpp"
 
@@ -41,8 +44,12 @@ Picture read_input(const std::string& file) {
 
 /// Without a calibration the pair is taken as rectified already; then only the size of the camera matters.
 StereoCalibration calibration_for(const DisparityArguments& arguments, const Picture& left) {
-  if (!arguments.calibration.empty()) return read_calibration(arguments.calibration);
   StereoCalibration calibration;
+  if (!arguments.calibration.empty()) {
+    calibration = read_calibration(arguments.calibration);
+    fit_resolution(calibration, left.width, left.height, arguments.left);
+    return calibration;
+  }
   CameraIntrinsics& camera = calibration.left;
   camera.width_px = left.width;
   camera.height_px = left.height;
@@ -56,16 +63,21 @@ StereoCalibration calibration_for(const DisparityArguments& arguments, const Pic
   return calibration;
 }
 
+/// A calibration that cannot be used is bad input.
+Rectifier rectifier_for(const DisparityArguments& arguments, const Picture& left) {
+  try {
+    return Rectifier(calibration_for(arguments, left));
+  } catch (const std::exception& error) {
+    throw UsageError(error.what());
+  }
+}
+
 /// Portable float map: +inf where there is no match.
 void write_disparity(const std::string& file, Image<float> disparity) {
   for (float& d : disparity.pixels) {
     if (std::isnan(d)) d = std::numeric_limits<float>::infinity();
   }
-  try {
-    write_pfm(file, disparity);
-  } catch (const std::exception& error) {
-    throw UsageError(std::string("--out: ") + error.what());
-  }
+  write_pfm(file, disparity);
 }
 
 /// The disparity in colours, as the page shows it.
@@ -76,13 +88,24 @@ void write_picture_of(const DisparityImage& disparity, const std::string& file) 
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << picture->data;
   out.close();
-  if (!out) throw UsageError(file + ": cannot be written");
+  if (!out) throw std::runtime_error(file + ": cannot be written; is the disk full?");
 }
 
 std::string beside(const std::string& pfm) {
   const std::size_t dot = pfm.rfind('.');
   const bool has_extension = dot != std::string::npos && pfm.find('/', dot) == std::string::npos;
   return (has_extension ? pfm.substr(0, dot) : pfm) + ".png";
+}
+
+void check_output(const std::string& pfm) {
+  if (pfm.empty()) throw UsageError("--out is missing; for instance --out D.pfm");
+  const std::string png = beside(pfm);
+  if (png == pfm)
+    throw UsageError("--out " + pfm +
+                     ": must not end in .png, which is the picture beside it; for instance D.pfm");
+  const std::filesystem::path folder = std::filesystem::path(pfm).parent_path();
+  if (!folder.empty()) make_output_folder(folder);
+  for (const std::string& file : {pfm, png}) check_output_file(file);
 }
 
 double density_percent(const Image<float>& disparity) {
@@ -105,7 +128,7 @@ void warn_of_row_offset(const RectifiedFrame& pair, const DisparityArguments& ar
 }
 
 int compute(DisparityArguments arguments) {
-  if (arguments.out.empty()) throw UsageError("--out is missing; for instance --out D.pfm");
+  check_output(arguments.out);
   StereoFrame frame{
       .timestamp_ns = 0, .left = read_input(arguments.left), .right = read_input(arguments.right)};
   if (frame.left.width != frame.right.width || frame.left.height != frame.right.height) {
@@ -115,7 +138,7 @@ int compute(DisparityArguments arguments) {
   }
   const int unused = std::min(unused_bits(frame.left), unused_bits(frame.right));
   for (Picture* picture : {&frame.left, &frame.right}) shift_up(*picture, unused);
-  const Rectifier rectifier(calibration_for(arguments, frame.left));
+  const Rectifier rectifier = rectifier_for(arguments, frame.left);
   const bool know_nearest = !arguments.calibration.empty();
   if (arguments.stereo.num_disparities == 0 && !know_nearest)
     arguments.stereo.num_disparities = kDefaultDisparities;

@@ -1,6 +1,7 @@
 // flogmap evaluate: an estimated path against the true one, or a map against the truth.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,7 +9,7 @@
 #include "mapping/odometry/trajectory_error.hpp"
 #include "server/commands/commands.hpp"
 #include "server/commands/evaluate_map.hpp"
-#include "server/option_table.hpp"
+#include "server/options.hpp"
 
 namespace flogmap {
 namespace {
@@ -20,22 +21,26 @@ struct EvaluateArguments {
   std::string truth;
   int tolerance_cells = 2;
   bool json = false;
+  OptionTable table;
 };
 
-Trajectory read_input(const char* option, const std::string& file) {
+using Reader = Trajectory (*)(const std::filesystem::path& file);
+
+Trajectory read_input(const char* option, const std::string& file, Reader read) {
   if (file.empty()) throw UsageError(std::string(option) + " is missing; see flogmap evaluate --help");
   try {
-    return read_trajectory(file);
+    return read(file);
   } catch (const std::exception& error) {
     throw UsageError(error.what());
   }
 }
 
-TrajectoryError compare(const Trajectory& estimate, const Trajectory& truth) {
+TrajectoryError compare(const Trajectory& estimate, const Trajectory& truth,
+                        const EvaluateArguments& arguments) {
   try {
     return evaluate_trajectory(estimate, truth);
   } catch (const std::exception& error) {
-    throw UsageError(error.what());
+    throw UsageError(arguments.trajectory + " and " + arguments.ground_truth + ": " + error.what());
   }
 }
 
@@ -66,15 +71,21 @@ void print_json(const TrajectoryError& error) {
 }
 
 int evaluate(const EvaluateArguments& arguments) {
+  if (!arguments.map.empty() && !arguments.trajectory.empty()) {
+    throw UsageError("--trajectory " + arguments.trajectory + " and --map " + arguments.map +
+                     ": allowed is one of them at a time");
+  }
   if (!arguments.map.empty()) {
     if (arguments.truth.empty())
       throw UsageError("--truth is missing: a folder with layer_<k>.png and .json");
     evaluate_map(arguments.map, arguments.truth, arguments.tolerance_cells, arguments.json);
     return 0;
   }
-  const Trajectory estimate = read_input("--trajectory", arguments.trajectory);
-  const Trajectory truth = read_input("--ground-truth", arguments.ground_truth);
-  const TrajectoryError error = compare(estimate, truth);
+  const Trajectory estimate = read_input("--trajectory", arguments.trajectory, read_trajectory);
+  // Two of KITTI's kind belong together line by line.
+  const Trajectory truth = read_input("--ground-truth", arguments.ground_truth,
+                                      estimate.timed ? read_true_trajectory : read_trajectory);
+  const TrajectoryError error = compare(estimate, truth, arguments);
   if (arguments.json) {
     print_json(error);
   } else {
@@ -87,22 +98,25 @@ int evaluate(const EvaluateArguments& arguments) {
 
 RunCommand add_evaluate(CLI::App& app) {
   auto arguments = std::make_shared<EvaluateArguments>();
-  app.add_option("--trajectory", arguments->trajectory, "estimated path, TUM: timestamp tx ty tz qx qy qz qw")
-      ->type_name("FILE");
-  app.add_option("--ground-truth", arguments->ground_truth, "true path: TUM, EuRoC csv or KITTI poses")
-      ->type_name("FILE");
-  app.add_option("--map", arguments->map, "instead: a stored map")->type_name("map.flog");
-  app.add_option("--truth", arguments->truth,
-                 "true occupancy: layer_<k>.png and .json, surface_<k>.png or seen_<k>.png if known")
-      ->type_name("DIR");
-  app.add_option("--tolerance", arguments->tolerance_cells, "a surface may be so many cells off")
-      ->check(CLI::Range(0, 100))
-      ->type_name("CELLS [2]");
-  app.add_flag("--json", arguments->json, "print one JSON object instead of a table");
+  OptionTable& table = arguments->table;
+  table.text("trajectory", "FILE", arguments->trajectory,
+             "estimated path, TUM: timestamp tx ty tz qx qy qz qw");
+  table.text("ground-truth", "FILE", arguments->ground_truth,
+             "true path: TUM, EuRoC csv, or KITTI poses with their times.txt beside them or in sequences/");
+  table.text("map", "map.flog", arguments->map, "instead: a stored map");
+  table.text("truth", "DIR", arguments->truth,
+             "true occupancy: layer_<k>.png and .json, surface_<k>.png or seen_<k>.png if known");
+  table.integer("tolerance", "CELLS", arguments->tolerance_cells, 0, 100,
+                "a surface may be so many cells off");
+  table.flag("json", arguments->json, "print one JSON object instead of a table");
+  table.attach(app);
   app.footer(
       "Examples: flogmap evaluate --trajectory /tmp/map/trajectory.tum --ground-truth groundtruth.tum\n"
       "          flogmap evaluate --map /tmp/map/map.flog --truth truth");
-  return [arguments] { return evaluate(*arguments); };
+  return [arguments] {
+    arguments->table.apply(all_option_names());
+    return evaluate(*arguments);
+  };
 }
 
 }  // namespace flogmap

@@ -1,7 +1,9 @@
 #include "server/commands/evaluate_map.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "mapping/map_truth.hpp"
 #include "server/commands/continued_map.hpp"
@@ -23,6 +25,25 @@ void print_row(int layer, const LayerScore& s) {
               s.free.f1, s.coverage, s.wrongly_blocked, s.wrongly_free);
 }
 
+void print_table(const std::vector<LayerScore>& scores) {
+  std::printf("        occupied               free\n");
+  std::printf("layer   precis recall     F1   precis recall     F1   coverage  wrong.block  wrong.free\n");
+  for (std::size_t k = 0; k < scores.size(); ++k) print_row(static_cast<int>(k), scores[k]);
+}
+
+void print_json(const std::vector<LayerScore>& scores) {
+  json document = json::array();
+  for (const LayerScore& s : scores) {
+    document.push_back({{"layer", document.size()},
+                        {"occupied", to_json(s.occupied)},
+                        {"free", to_json(s.free)},
+                        {"coverage", s.coverage},
+                        {"wrongly_blocked", s.wrongly_blocked},
+                        {"wrongly_free", s.wrongly_free}});
+  }
+  std::printf("%s\n", document.dump(2).c_str());
+}
+
 StoredMap load_input(const std::string& file) {
   try {
     return load_settled_map(file);
@@ -39,8 +60,24 @@ LayerTruth load_truth(const std::string& folder, int layer) {
   }
 }
 
+/// A truth of other heights tells nothing about the map's layer.
+void check_heights(const GridSpec& grid, const LayerTruth& truth, const std::string& folder, int layer) {
+  constexpr double kTolerance_m = 0.001;
+  const double low = grid.layer_bounds_m[layer], high = grid.layer_bounds_m[layer + 1];
+  const bool said = truth.low_m != 0 || truth.high_m != 0;
+  const bool same =
+      std::abs(truth.low_m - low) <= kTolerance_m && std::abs(truth.high_m - high) <= kTolerance_m;
+  if (!said || same) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "z is %g to %g m, but layer %d of the map is %g to %g m; map with the --layers of the truth",
+                truth.low_m, truth.high_m, layer, low, high);
+  throw UsageError(folder + "/layer_" + std::to_string(layer) + ".json: " + text);
+}
+
 LayerScore score(const StoredMap& map, const std::string& folder, int layer, int tolerance_cells) {
   const LayerTruth truth = load_truth(folder, layer);
+  check_heights(map.info.grid, truth, folder, layer);
   ScoreOptions options;
   options.tolerance_cells = tolerance_cells;
   options.seen_surfaces = truth.seen_surfaces;
@@ -55,22 +92,14 @@ LayerScore score(const StoredMap& map, const std::string& folder, int layer, int
 void evaluate_map(const std::string& map_file, const std::string& truth_folder, int tolerance_cells,
                   bool as_json) {
   const StoredMap map = load_input(map_file);
-  json document = json::array();
-  if (!as_json) {
-    std::printf("        occupied               free\n");
-    std::printf("layer   precis recall     F1   precis recall     F1   coverage  wrong.block  wrong.free\n");
+  std::vector<LayerScore> scores;  // all of them before the first is printed
+  for (int layer = 0; layer < map.info.grid.num_layers(); ++layer)
+    scores.push_back(score(map, truth_folder, layer, tolerance_cells));
+  if (as_json) {
+    print_json(scores);
+  } else {
+    print_table(scores);
   }
-  for (int layer = 0; layer < map.info.grid.num_layers(); ++layer) {
-    const LayerScore s = score(map, truth_folder, layer, tolerance_cells);
-    document.push_back({{"layer", layer},
-                        {"occupied", to_json(s.occupied)},
-                        {"free", to_json(s.free)},
-                        {"coverage", s.coverage},
-                        {"wrongly_blocked", s.wrongly_blocked},
-                        {"wrongly_free", s.wrongly_free}});
-    if (!as_json) print_row(layer, s);
-  }
-  if (as_json) std::printf("%s\n", document.dump(2).c_str());
 }
 
 }  // namespace flogmap

@@ -11,6 +11,7 @@
 #include "server/commands/commands.hpp"
 #include "server/commands/interrupt_watcher.hpp"
 #include "server/commands/mapping_session.hpp"
+#include "server/commands/output_path.hpp"
 #include "server/commands/progress_bar.hpp"
 #include "server/export/map_files.hpp"
 #include "server/pipeline.hpp"
@@ -67,10 +68,17 @@ double peak_rss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-nlohmann::json statistics(const StatusReport& status, const StoredMap& map, double wall_s) {
+/// With given poses a frame is never lost; it is one that none is given for.
+std::uint64_t frames_without_pose(const Options& options, const StatusReport& status) {
+  return options.poses_file.empty() ? 0 : status.lost;
+}
+
+nlohmann::json statistics(const StatusReport& status, const StoredMap& map, std::uint64_t without_pose,
+                          double wall_s) {
   nlohmann::json document = {{"frames", status.frames},
                              {"tracked", status.tracked},
-                             {"lost", status.lost},
+                             {"lost", status.lost - without_pose},
+                             {"without_pose", without_pose},
                              {"skipped", status.skipped_frames},
                              {"mapped_views", status.mapped_views},
                              {"waiting_views", status.waiting_views},
@@ -98,12 +106,6 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
   file << text << '\n';
   file.close();
   if (!file) throw std::runtime_error(path.string() + ": cannot be written");
-}
-
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw UsageError("--out " + folder + ": cannot be made: " + error.message());
 }
 
 std::int64_t frames_to_map(const SourceInfo& info, int max_frames) {
@@ -134,19 +136,25 @@ StoredMap collected_map(const MapSnapshot& snapshot, const MapCollector& collect
   return map;
 }
 
-void print_summary(const StatusReport& status, double fps, const std::string& alignment,
-                   const std::string& folder) {
+void print_summary(const StatusReport& status, std::uint64_t without_pose, double fps,
+                   const std::string& alignment, const std::string& folder) {
   const auto count = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
   std::printf(
       "%llu frames, %llu tracked, %llu lost, %llu skipped; %llu views mapped; %llu loops; %.1f frames/s; "
       "%s\n",
-      count(status.frames), count(status.tracked), count(status.lost), count(status.skipped_frames),
-      count(status.mapped_views - status.waiting_views), count(status.loops), fps, alignment.c_str());
-  if (status.waiting_views > 0) {
-    std::printf("warning: %llu views are not in the map: their place was not recognised after a loss\n",
-                count(status.waiting_views));
+      count(status.frames), count(status.tracked), count(status.lost - without_pose),
+      count(status.skipped_frames), count(status.mapped_views - status.waiting_views), count(status.loops),
+      fps, alignment.c_str());
+  if (without_pose > 0) {
+    std::fprintf(stderr, "warning: %llu frames are not in the map: no pose is given within 5 ms of them\n",
+                 count(without_pose));
   }
-  for (const std::string& warning : status.warnings) std::printf("warning: %s\n", warning.c_str());
+  if (status.waiting_views > 0) {
+    std::fprintf(stderr,
+                 "warning: %llu views are not in the map: their place was not recognised after a loss\n",
+                 count(status.waiting_views));
+  }
+  for (const std::string& warning : status.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   std::printf("written to %s: map.flog, fused.png, path.png, layer_*.png, ros/, trajectory.tum, stats.json\n",
               folder.c_str());
 }
@@ -154,7 +162,7 @@ void print_summary(const StatusReport& status, double fps, const std::string& al
 int run_map(const Options& options, int max_frames, const std::string& options_json) {
   if (options.out_dir.empty()) throw UsageError("--out is missing; for instance --out /tmp/map");
   MappingSession session = open_session(options);
-  make_folder(options.out_dir);
+  make_output_folder(options.out_dir);
   limit_map_memory(options);
   const StereoCamera camera = session.front_end.camera();
   const std::int64_t num_frames = frames_to_map(session.source->info(), max_frames);
@@ -176,9 +184,10 @@ int run_map(const Options& options, int max_frames, const std::string& options_j
   map.calibration_json = calibration_json(session.calibration, camera);
   write_map_folder(options.out_dir, map, options.serve.operators);
   const StatusReport status = pipeline.status();
-  const nlohmann::json document = statistics(status, map, wall_s);
+  const std::uint64_t without_pose = frames_without_pose(options, status);
+  const nlohmann::json document = statistics(status, map, without_pose, wall_s);
   write_text(std::filesystem::path(options.out_dir) / "stats.json", document.dump(2));
-  print_summary(status, document["fps"].get<double>(), collector.alignment(), options.out_dir);
+  print_summary(status, without_pose, document["fps"].get<double>(), collector.alignment(), options.out_dir);
   return 0;
 }
 

@@ -11,6 +11,7 @@
 #include "camera/recording_writer.hpp"
 #include "server/commands/commands.hpp"
 #include "server/commands/interrupt_watcher.hpp"
+#include "server/commands/output_path.hpp"
 #include "server/commands/progress_bar.hpp"
 #include "server/options.hpp"
 
@@ -52,6 +53,7 @@ RecordingWriter open_output(const RecordArguments& arguments, const StereoSource
   if (!calibration) {
     throw UsageError(source.info().spec + ": carries no calibration; give one with --calibration FILE");
   }
+  make_output_folder(folder);
   try {
     return {folder, *calibration,
             RecordingWriter::Options{.compress = arguments.pictures != PictureFormat::pgm,
@@ -67,9 +69,6 @@ RecordingWriter open_output(const RecordArguments& arguments, const StereoSource
 int record(const RecordArguments& arguments) {
   const auto source = open_input(arguments.options.source);
   const SourceInfo info = source->info();
-  if (info.endless && !info.live && arguments.duration_s <= 0) {
-    throw UsageError(info.spec + ": has no end; say how long with --duration SECONDS");
-  }
   RecordingWriter writer = open_output(arguments, *source);
   const InterruptWatcher ctrl_c([&] { source->stop(); });
   ProgressBar progress("recording", info.num_frames.value_or(0));
@@ -91,8 +90,8 @@ int record(const RecordArguments& arguments) {
   const SkippedFrames skipped = source->skipped();
   std::printf("%lld pairs written to %s; %lld skipped\n", static_cast<long long>(writer.num_written()),
               arguments.options.out_dir.c_str(), static_cast<long long>(skipped.count));
-  if (skipped.count > 0) std::printf("warning: last skipped: %s\n", skipped.last_reason.c_str());
-  if (!info.assumed.empty()) std::printf("warning: %s\n", info.assumed.c_str());
+  if (skipped.count > 0) std::fprintf(stderr, "warning: last skipped: %s\n", skipped.last_reason.c_str());
+  if (!info.assumed.empty()) std::fprintf(stderr, "warning: %s\n", info.assumed.c_str());
   if (!broken_off.empty()) throw std::runtime_error(broken_off);
   return 0;
 }

@@ -64,6 +64,19 @@ void write_files(const std::filesystem::path& folder, const std::vector<Exported
   }
 }
 
+void remove_numbered_from(const std::filesystem::path& folder, const std::string& stem,
+                          const std::string& extension, int first) {
+  std::vector<std::filesystem::path> stale;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    int number = 0;
+    std::from_chars(name.data() + std::min(stem.size(), name.size()), name.data() + name.size(), number);
+    if (number >= first && name == stem + std::to_string(number) + extension) stale.push_back(entry.path());
+  }
+  for (const auto& file : stale) std::filesystem::remove(file, error);
+}
+
 std::string tar_of(const std::vector<ExportedFile>& files) {
   std::string archive;
   for (const ExportedFile& file : files) {

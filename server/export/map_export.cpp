@@ -62,7 +62,7 @@ ExportedFile export_bytes(ExportFormat format, const StoredMap& map, const Expor
 void export_map(ExportFormat format, const StoredMap& map, const std::filesystem::path& path,
                 const ExportOptions& options) {
   if (format == ExportFormat::ros) {
-    write_files(path, ros_map(snapshot_of(map), options.rules, options.ros_mode));
+    write_ros_map(path, snapshot_of(map), options.rules, options.ros_mode);
   } else if (format == ExportFormat::png) {
     write_png(map, path, options);
   } else {

@@ -36,8 +36,9 @@ void write_map_folder(const std::filesystem::path& folder, const StoredMap& map,
   write_files(folder, {{"trajectory.tum", "text/plain", tum_of(map.trajectory)}});
   save_map(folder / "map.flog", map);
   write_files(folder, pictures(snapshot, rules));
+  remove_numbered_from(folder, "layer_", ".png", map.info.grid.num_layers());
   write_files(folder, {{"path.png", "image/png", png_of(path_picture(map, operators))}});
-  write_files(folder / "ros", ros_map(snapshot, rules, RosMode::trinary));
+  write_ros_map(folder / "ros", snapshot, rules, RosMode::trinary);
 }
 
 }  // namespace flogmap

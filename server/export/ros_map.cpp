@@ -62,4 +62,11 @@ std::vector<ExportedFile> ros_map(const MapSnapshot& map, const Rules& rules, Ro
   return files;
 }
 
+void write_ros_map(const std::filesystem::path& folder, const MapSnapshot& map, const Rules& rules,
+                   RosMode mode) {
+  write_files(folder, ros_map(map, rules, mode));
+  for (const char* extension : {".pgm", ".yaml"})
+    remove_numbered_from(folder, "layer_", extension, map.info.grid.num_layers());
+}
+
 }  // namespace flogmap

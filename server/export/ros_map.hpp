@@ -24,4 +24,8 @@ std::vector<ExportedFile> ros_files(const MapSnapshot& map, const MapArea& area,
 /// map.* (fused) and layer_<k>.* of every layer, all cut to what was seen.
 std::vector<ExportedFile> ros_map(const MapSnapshot& map, const Rules& rules, RosMode mode);
 
+/// Writes ros_map() into a folder; layers that only an older map there had are removed.
+void write_ros_map(const std::filesystem::path& folder, const MapSnapshot& map, const Rules& rules,
+                   RosMode mode);
+
 }  // namespace flogmap

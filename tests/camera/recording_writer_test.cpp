@@ -109,6 +109,22 @@ TEST(RecordingWriter, TimesLoseNoNanosecond) {
   EXPECT_EQ(seconds_text(50), "0.000000050");
 }
 
+TEST(Simulation, WhatIsBrokenOffLeavesNothingThatBlocksItsName) {
+  const testing::TemporaryFolder folder;
+  const Scene scene = testing::small_scene();
+  const SimulationOptions options{.seed = 4, .num_frames = 3, .num_depth_views = 1};
+  const auto stop = [](std::int64_t, std::int64_t) { throw std::runtime_error("stop"); };
+  EXPECT_THROW(simulate_recording(scene, folder.path(), options, stop), std::runtime_error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  std::ofstream(folder.path() / "notes.txt") << "mine";
+  EXPECT_THROW(simulate_recording(scene, folder.path(), options, stop), std::runtime_error);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "notes.txt"));
+  EXPECT_NO_THROW(simulate_recording(scene, folder.path(), options, {}));
+  EXPECT_THROW(simulate_recording(scene, folder.path(), options, {}), std::runtime_error);
+  EXPECT_TRUE(
+      std::filesystem::exists(folder.path() / "mav0" / "cam0" / "data.csv"));  // the finished one stays
+}
+
 TEST(Simulation, ARecordingHasItsPicturesPosesDepthAndTruth) {
   const testing::TemporaryFolder folder;
   Scene scene = testing::small_scene();

@@ -144,6 +144,8 @@ TEST(Tokens, AFileSaysWhichLineIsWrong) {
               HasSubstr(":2: role must be view or control"));
   EXPECT_THAT(complaint("view short\n"), HasSubstr(":1: a token needs at least 8"));
   EXPECT_THAT(complaint("# nothing\n"), HasSubstr("holds no token"));
+  EXPECT_THAT(complaint("view view-secret extra\n"), HasSubstr(":1: more than"));
+  EXPECT_THAT(complaint("view same-secret\ncontrol same-secret\n"), HasSubstr("each role needs its own"));
 }
 
 }  // namespace

@@ -40,6 +40,20 @@ TEST(MapFolder, CanBeWrittenTwiceAndOfAnEmptyMap) {
   EXPECT_NO_THROW(write_map_folder(folder / "out", empty_map(1, 1)));
 }
 
+TEST(MapFolder, OfAnOlderMapWithMoreLayersNoneIsLeftAndNothingElseIsTouched) {
+  const TemporaryFolder folder;
+  write_map_folder(folder / "out", random_map(1, {.num_layers = 3, .tiles_per_side = 1}));
+  const std::set<std::string> own{"layer_2_mine.png", "layer_02.png", "layer_x.png", "layer_7.txt", "layer_"};
+  for (const std::string& name : own) write_bytes(folder / "out" / name, {1});
+  write_map_folder(folder / "out", random_map(2, {.num_layers = 1, .tiles_per_side = 1}));
+  const std::set<std::string> there = names_in(folder / "out");
+  for (const char* stale : {"layer_1.png", "layer_2.png", "ros/layer_1.pgm", "ros/layer_2.yaml"})
+    EXPECT_FALSE(there.contains(stale)) << stale;
+  for (const std::string& name : own) EXPECT_TRUE(there.contains(name)) << name;
+  EXPECT_TRUE(there.contains("layer_0.png"));
+  EXPECT_TRUE(there.contains("ros/layer_0.yaml"));
+}
+
 TEST(MapFolder, NamesTheFileThatCannotBeWritten) {
   const TemporaryFolder folder;
   write_bytes(folder / "out", {1});

@@ -24,7 +24,8 @@ flogmap_test(hub_attack_tests SOURCES hub_attack_test.cpp hub_frame_attack_test.
 
 # The program itself, as a process of its own.
 find_package(yaml-cpp REQUIRED)
-flogmap_test(program_tests SOURCES contract_cases.cpp contract_test.cpp json_schema.cpp map_store_support.cpp program_disk_test.cpp
+flogmap_test(program_tests SOURCES contract_cases.cpp contract_test.cpp json_schema.cpp map_store_support.cpp
+                                   program_commands_test.cpp program_disk_test.cpp
                                    program_recording_test.cpp program_store_test.cpp
                                    running_program.cpp
              LINK camera client_frames loopback_hub map_store nlohmann_json::nlohmann_json yaml-cpp)

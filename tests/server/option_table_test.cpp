@@ -97,6 +97,8 @@ TEST_F(OptionTableTest, BrokenAndMissingFilesAreSaid) {
   EXPECT_THAT(failure({"--config", config("{")}), HasSubstr("not JSON"));
   EXPECT_THAT(failure({"--config", config("[1]")}), HasSubstr("one JSON object"));
   EXPECT_THAT(failure({"--config", "/no/such/file.json"}), HasSubstr("/no/such/file.json"));
+  EXPECT_THAT(failure({"--config", ::testing::TempDir()}),
+              HasSubstr("--config " + ::testing::TempDir() + ": is a folder"));
 }
 
 TEST_F(OptionTableTest, NumbersAreReadWholeOrNotAtAll) {
@@ -124,8 +126,22 @@ TEST(Options, ImpossibleLayersAreNamed) {
   Options options;
   OptionTable table;
   add_mapping_options(table, options);
-  table.set("layers", "1,0.5", "test");
-  EXPECT_THROW(settle(options), UsageError);
+  EXPECT_THROW(table.set("layers", "1,0.5", "test"), UsageError);
+  EXPECT_THROW(table.set("layers", "1", "test"), UsageError);
+}
+
+TEST(Options, HostsAndOriginsThatCannotBeAreRefused) {
+  Options options;
+  OptionTable table;
+  add_listen_options(table, options);
+  for (const char* host : {"a b", "http://a", "a/b", "a:b", "*"})
+    EXPECT_THROW(table.set("allow-host", host, "test"), UsageError) << host;
+  for (const char* origin : {"foo", "robot.lan", "https://", "https://a/b", "https://a b", "a,https://b"})
+    EXPECT_THROW(table.set("allow-origin", origin, "test"), UsageError) << origin;
+  table.set("allow-host", "robot.lan,10.0.0.7:8080,[fe80::1]:80", "test");
+  table.set("allow-origin", "https://robot.lan:8443,http://[::1],app://page", "test");
+  EXPECT_EQ(options.serve.allow_hosts.size(), 3U);
+  EXPECT_EQ(options.serve.allow_origins.size(), 3U);
 }
 
 }  // namespace

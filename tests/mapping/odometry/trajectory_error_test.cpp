@@ -57,6 +57,43 @@ TEST_F(TrajectoryFile, KittiIsNumbered) {
   EXPECT_EQ(t.poses[1].world_from_camera.translation(), Eigen::Vector3d(8, 9, 10));
 }
 
+/// `from` to `to` - 1 of a walk along a curve, every pose one KITTI line.
+std::string kitti_walk(int from, int to) {
+  std::string text;
+  for (int i = from; i < to; ++i)
+    text += "1 0 0 " + std::to_string(0.1 * i * i) + " 0 1 0 " + std::to_string(i) + " 0 0 1 0\n";
+  return text;
+}
+
+/// The same walk by time, without what is lost.
+Trajectory timed_walk(int from, int to, int lost) {
+  Trajectory walk;
+  for (int i = from; i < to; ++i) {
+    SE3 pose = SE3::Identity();
+    pose.translation() = Eigen::Vector3d(0.1 * i * i, i, 0);
+    if (i != lost) walk.poses.push_back({std::int64_t{100'000'000} * i, pose});
+  }
+  return walk;
+}
+
+TEST_F(TrajectoryFile, KittiTruthIsPairedByTheTimesOfItsSequence) {
+  const auto root = std::filesystem::path(testing::TempDir()) / "trajectory_kitti";
+  std::filesystem::create_directories(root / "poses");
+  std::filesystem::create_directories(root / "sequences" / "07");
+  const auto poses = root / "poses" / "07.txt", times = root / "sequences" / "07" / "times.txt";
+  std::ofstream(poses) << kitti_walk(0, 8);
+  std::filesystem::remove(times);
+  EXPECT_FALSE(read_true_trajectory(poses).timed);
+  EXPECT_THROW((void)evaluate_trajectory(timed_walk(0, 8, 2), read_true_trajectory(poses)),
+               std::runtime_error);
+  std::ofstream(times) << "0\n1.000000e-01\n0.2\n0.3\n0.4\n0.5\n0.6\n0.7\n";
+  const TrajectoryError error = evaluate_trajectory(timed_walk(0, 8, 2), read_true_trajectory(poses));
+  EXPECT_EQ(error.num_poses, 7);
+  EXPECT_NEAR(error.ate_rmse_m, 0, 1e-9);
+  std::ofstream(times) << "0\n0.1\n";
+  EXPECT_THROW((void)read_true_trajectory(poses), std::runtime_error);
+}
+
 TEST_F(TrajectoryFile, ErrorsNameFileLineAndWhatIsAllowed) {
   EXPECT_THAT(complaint("1 2 3\n"),
               AllOf(HasSubstr("trajectory_ErrorsName"), HasSubstr(":1: has 3 numbers"), HasSubstr("KITTI")));
