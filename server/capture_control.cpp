@@ -142,9 +142,7 @@ bool CaptureControl::reads() const {
   return !ended_generation_ && (state_ == SessionState::running || steps_ > 0 || is_on_its_way());
 }
 
-bool CaptureControl::has_work() const {
-  return stop_ || tell_ || relevel_ || reset_ || seek_s_ || reads();
-}
+bool CaptureControl::has_work() const { return stop_ || tell_ || relevel_ || reset_ || seek_s_ || reads(); }
 
 CaptureTurn CaptureControl::await_turn() {
   std::unique_lock lock(mutex_);

@@ -18,7 +18,8 @@ void check_tls(const ServeOptions& options);
 /// Accepts connections, within the limits.
 class Listener {
  public:
-  /// Binds. Throws std::runtime_error in one line if that fails or the certificate cannot be used.
+  /// Binds. Throws in one line if that fails (std::runtime_error) or the certificate cannot be used
+  /// (std::invalid_argument).
   Listener(boost::asio::io_context& network, const ServeOptions& options, SessionContext context,
            ConnectionLimit& limit);
 

@@ -40,7 +40,8 @@ TEST(CaptureControl, ASimulatedWalkHasNoEndButARateAndAPause) {
   walk.num_frames.reset();
   CaptureControl control = running(walk);
   control.started();
-  EXPECT_EQ(control.change_playback({.position_s = {}, .rate = 2, .paused = true}).outcome, ControlOutcome::done);
+  EXPECT_EQ(control.change_playback({.position_s = {}, .rate = 2, .paused = true}).outcome,
+            ControlOutcome::done);
   control.frame_delivered(7 * kSecond);
   EXPECT_FALSE(control.playback().seekable);
   EXPECT_TRUE(control.playback().paused);

@@ -134,7 +134,7 @@ TEST(TlsOptions, AKeyThatDoesNotFitIsOneClearLine) {
   try {
     Hub hub(options, session, {});
     FAIL() << "a foreign key was taken";
-  } catch (const std::runtime_error& error) {
+  } catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(), HasSubstr(options.tls_key));
   }
 }
