@@ -75,8 +75,9 @@ double liking(std::string_view accept, std::string_view type) {
 /// What stands before the path of an absolute URL, as proxies are asked for; empty where it begins with the
 /// path.
 std::string_view take_authority(std::string_view& target) {
-  const std::string scheme = lower_case(target.substr(0, target.find("://")));
-  if (scheme != "http" && scheme != "https") return {};
+  const auto colon = target.find("://");
+  const std::string scheme = lower_case(target.substr(0, colon));
+  if (colon == std::string_view::npos || (scheme != "http" && scheme != "https")) return {};
   target.remove_prefix(scheme.size() + 3);
   const std::string_view authority = target.substr(0, target.find_first_of("/?"));
   target.remove_prefix(authority.size());

@@ -25,6 +25,28 @@ TEST(Target, PathAndQueryAreDecoded) {
   EXPECT_EQ(request.parameter("y"), std::nullopt);
 }
 
+TEST(Target, AnAbsoluteUrlBringsItsHost) {
+  for (const std::string target : {"http://host:80/a?x=1", "HTTPS://host:80/a?x=1"}) {
+    ApiRequest request;
+    request.host = "other";
+    ASSERT_TRUE(parse_target(target, request)) << target;
+    EXPECT_EQ(request.host, "host:80");
+    EXPECT_EQ(request.path, "/a");
+    EXPECT_EQ(request.parameter("x"), "1");
+  }
+  ApiRequest bare;
+  ASSERT_TRUE(parse_target("http://host?x=1", bare));
+  EXPECT_EQ(bare.path, "/");
+  EXPECT_EQ(bare.parameter("x"), "1");
+  for (const std::string target :
+       {"http", "https", "http:", "http:/", "http://", "http:///a", "ftp://host/a", "://host/a"}) {
+    ApiRequest request;
+    request.host = "other";
+    (void)parse_target(target, request);  // must read nothing beyond its end
+    EXPECT_EQ(request.host, "other") << target;
+  }
+}
+
 TEST(Target, BrokenEscapesAndHiddenEndsAreRefused) {
   for (const char* target : {"", "a", "*", "/%", "/%4", "/%zz", "/a%00b", "/?x=%"}) {
     ApiRequest request;
