@@ -65,6 +65,8 @@ class Pipeline {
   void capture();
   bool read_frame();
   void note_losses();
+  void tell_counts();
+  void tell_level();
   void restart(const std::string& reason, double position_s);
   void go_to(double position_s);
   void at_end();

@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 void Pipeline::capture() {
   source_->on_trouble([this] {
     note_losses();
-    frames_.push({.generation = generation_, .frame = {}, .tell = true, .at = Clock::now()});
+    tell_counts();
   });
   const std::string epoch = options_.continued.epoch;
   generation_ = {1, epoch.empty() ? random_epoch() : epoch, epoch.empty() ? "started" : "continued",
@@ -35,13 +35,10 @@ void Pipeline::capture() {
         go_to(turn.position_s);
         break;
       case CaptureTurn::Kind::level:
-        frames_.push({.generation = generation_,
-                      .frame = {},
-                      .level = control_.levelling().level,
-                      .at = Clock::now()});
+        tell_level();
         break;
       case CaptureTurn::Kind::tell:
-        frames_.push({.generation = generation_, .frame = {}, .tell = true, .at = Clock::now()});
+        tell_counts();
         break;
       case CaptureTurn::Kind::read:
         if (!read_frame()) {
@@ -52,6 +49,16 @@ void Pipeline::capture() {
     }
   }
   frames_.close();
+}
+
+/// Behind the frames that are under way.
+void Pipeline::tell_counts() {
+  frames_.push({.generation = generation_, .frame = {}, .tell = true, .at = Clock::now()});
+}
+
+void Pipeline::tell_level() {
+  frames_.push(
+      {.generation = generation_, .frame = {}, .level = control_.levelling().level, .at = Clock::now()});
 }
 
 bool Pipeline::read_frame() {
