@@ -74,6 +74,7 @@ TEST(ProgramStore, AMapWhoseTilesAreBehindItsPathIsBuiltAnewAtTheNextStart) {
 TEST(ProgramStore, WhoReadsItsLogMayLeave) {
   const TemporaryFolder folder = TemporaryFolder::in_memory();
   RunningProgram program(mapping_into(folder / "map.flog", folder.path()));
+  ASSERT_TRUE(wait_until([&] { return revision_of(program) > 0; }));  // it runs
   program.hang_up();
   for (int i = 0; i < 5; ++i) {  // each is told in the log
     EXPECT_EQ(http(program.port(), "POST", "/api/v1/session:reset").status, 200);
