@@ -100,6 +100,7 @@ TEST(ProgramStore, RulesOverWhatIsStoredFollowTheOptionsOfEachStart) {
   }
   arguments.insert(arguments.end(), {"--min-rays", "3", "--full-confidence-rays", "50"});
   RunningProgram program(arguments);
+  ASSERT_TRUE(wait_until([&] { return revision_of(program) > 0; }));
   EXPECT_GT(revision_of(program), revision);  // pictures that viewers keep were made by the old rules
   EXPECT_EQ(live_map(program)["min_rays"], 3);
   for (const auto& layer : live_map(program)["layers"]) EXPECT_EQ(layer["full_confidence_rays"], 50);
