@@ -80,6 +80,8 @@ void add_grid_options(OptionTable& table, Options& options) {
              .show = [&flog] { return joined(flog.grid.layer_bounds_m); }});
   table.number("max-range", "METRES", flog.max_range_m, 0.1, 1000,
                "farther points only say where it is free");
+  table.number("max-incidence", "DEGREES", flog.max_incidence_deg, 30, 90,
+               "pixels that see a surface at more than this from its normal are left out; 90 = none");
   table.integer("row-step", "N", flog.row_step, 1, 64, "use every N-th row of a view");
   table.number("view-translation-cells", "CELLS", options.front_end.views.translation_cells, 0.001, 1e6,
                "a view is mapped if the camera moved this far since the last mapped one");

@@ -13,6 +13,7 @@ enum class IntegratorKind : std::uint8_t { fan, ray };
 struct FlogOptions {
   GridSpec grid;
   double max_range_m = 5;           // a longer ray only says where it is free, up to here
+  double max_incidence_deg = 76;    // pixels that see a surface more askew are left out; 90: none
   int row_step = 1;                 // every row_step-th row of a view is used ...
   int column_step = 1;              // ... and every column_step-th column
   bool paper_mode = false;          // memberships literally as in the paper; FLOG.md sections 1 and 2

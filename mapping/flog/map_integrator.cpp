@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mapping/flog/full_confidence.hpp"
+#include "mapping/flog/grazing.hpp"
 #include "mapping/flog/ray_integrator.hpp"
 #include "mapping/flog/threads.hpp"
 
@@ -72,7 +73,11 @@ std::vector<TileUpdate> MapIntegrator::integrate(const View& view) {
   if (view.disparity.px.size() > kMaxRaysPerView || !within_the_grid(options_.grid, view.world_from_camera)) {
     return {};
   }
-  gather(view);
+  View squarely;
+  squarely.world_from_camera = view.world_from_camera;
+  squarely.disparity = without_grazing(model_.camera, options_.grid, view,
+                                       options_.paper_mode ? 90 : options_.max_incidence_deg);
+  gather(squarely);
   return merge();
 }
 
