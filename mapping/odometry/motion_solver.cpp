@@ -53,13 +53,6 @@ struct Loss {
   double cost = 0, weight = 1, weight_slope = 0;
 };
 
-/// Huber: squared up to k standard deviations, then linear.
-Loss huber(double squared_sigmas, double k) {
-  if (squared_sigmas <= k * k) return {squared_sigmas, 1, 0};
-  const double sigmas = std::sqrt(squared_sigmas);
-  return {2 * k * sigmas - k * k, k / sigmas, -0.5 * k / (squared_sigmas * sigmas)};
-}
-
 /// Cauchy: logarithmic far beyond k standard deviations.
 Loss cauchy(double squared_sigmas, double k) {
   const double growth = 1 + squared_sigmas / (k * k);
@@ -85,9 +78,6 @@ class Problem {
  public:
   Problem(const StereoCamera& camera, const std::vector<MotionPoint>& points, const MotionOptions& options)
       : camera_(camera), points_(points), options_(options), used_(points.size(), true) {}
-
-  /// Goes over from Huber's loss to Cauchy's.
-  void let_most_decide() { redescending_ = true; }
 
   [[nodiscard]] NormalEquations linearise(const SE3& pose) const {
     NormalEquations n;
@@ -177,8 +167,7 @@ class Problem {
 
  private:
   [[nodiscard]] Loss loss_of(const Residual& r) const {
-    return redescending_ ? cauchy(r.squared_sigmas, options_.robust_sigmas)
-                         : huber(r.squared_sigmas, 2 * options_.robust_sigmas);
+    return cauchy(r.squared_sigmas, options_.robust_sigmas);
   }
 
   /// The largest share that a point has in the information about a direction w of the motion,
@@ -201,7 +190,6 @@ class Problem {
   const std::vector<MotionPoint>& points_;
   const MotionOptions& options_;
   std::vector<bool> used_;
-  bool redescending_ = false;
 };
 
 /// Inverse of the information, enlarged for the points' lower weights and if the residuals are larger than
@@ -269,7 +257,6 @@ std::optional<Motion> refine_motion(const StereoCamera& camera, const std::vecto
   Problem problem(camera, points, options);
   Motion motion;
   motion.current_from_key = problem.solve(start);
-  problem.let_most_decide();
   for (int pass = 0; pass < 2; ++pass) {  // outliers bend the first solution, and with it who is one
     if (problem.keep_inliers(motion.current_from_key) < kFewest) return std::nullopt;
     motion.current_from_key = problem.solve(motion.current_from_key);

@@ -48,8 +48,7 @@ struct Motion {
 /// along (to first order). Nothing if the points do not determine six degrees of freedom.
 ///
 /// Most errors are a few hundredths of a pixel, a few are many times that (edges of depth, wrong slants), all
-/// within the bounds of an inlier: so the loss is Cauchy's, which lets the many decide. It has more than one
-/// minimum, so Huber's, which has one, leads there.
+/// within the bounds of an inlier: so the loss is Cauchy's, which lets the many decide.
 ///
 /// A point that outweighs all others together in some direction of the motion fits wherever it was found, and
 /// nothing would contradict it if it were a wrong one. It is left out and counts as an outlier.
