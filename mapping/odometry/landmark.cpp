@@ -1,5 +1,6 @@
 #include "mapping/odometry/landmark.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 
@@ -27,6 +28,12 @@ bool plausible_warp(const Eigen::Matrix2d& warp) {
   return warp.allFinite() && area > 0.15 && area < 6;
 }
 
+/// How much a picture was stretched, enlarged and sheared: the distance to the nearest turn.
+double change_of(const Eigen::Matrix2d& now_from_anchor) {
+  const double angle = std::atan2(now_from_anchor(1, 0) - now_from_anchor(0, 1), now_from_anchor.trace());
+  return (now_from_anchor - Eigen::Rotation2Dd(angle).toRotationMatrix()).norm();
+}
+
 }  // namespace
 
 Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
@@ -41,7 +48,8 @@ Landmark make_landmark(const StereoCamera& camera, const RectifiedFrame& frame,
           .anchor_pixel = pixel,
           .slant = slant,
           .in_odometry = odometry_from_camera * triangulate(camera, pixel),
-          .covariance = J * noise.asDiagonal() * J.transpose()};
+          .covariance = J * noise.asDiagonal() * J.transpose(),
+          .seen = {{odometry_from_camera.inverse(), pixel}}};
 }
 
 std::optional<StereoPixel> expected_pixel(const StereoCamera& camera, const Landmark& landmark,
@@ -70,7 +78,7 @@ std::optional<Sighting> find_landmark(const StereoCamera& camera, const Rectifie
   const auto disparity =
       refine_disparity(frame, left->px, expected->z(), (seen_now.row(2) * warp).transpose());
   if (!disparity) return std::nullopt;
-  return Sighting{landmark.id, {left->px.x(), left->px.y(), *disparity}};
+  return Sighting{landmark.id, {left->px.x(), left->px.y(), *disparity}, change_of(seen_now.topRows<2>())};
 }
 
 }  // namespace flogmap

@@ -7,6 +7,7 @@
 
 #include "camera/stereo_camera.hpp"
 #include "camera/stereo_frame.hpp"
+#include "mapping/odometry/landmark_point.hpp"
 #include "mapping/odometry/patch_alignment.hpp"
 #include "mapping/odometry/slant.hpp"
 #include "mapping/odometry/stereo_pixel.hpp"
@@ -19,18 +20,21 @@ struct Landmark {
   PatchSource patch;  // from the key frame where it was first seen, the anchor
   SE3 odometry_from_anchor;
   StereoPixel anchor_pixel;
-  Slant slant = Slant::Zero();      // of its surface, in the anchor's picture
-  Eigen::Vector3d in_odometry;      // metres
-  Eigen::Matrix3d covariance;       // of in_odometry, the anchor's pose taken as exact
-  std::int64_t last_key_frame = 0;  // the newest that saw it
-  int num_found = 0;                // frames that showed it
-  int num_missed = 0;               // frames that should have shown it, but did not
+  Slant slant = Slant::Zero();       // of its surface, in the anchor's picture
+  Eigen::Vector3d in_odometry;       // metres
+  Eigen::Matrix3d covariance;        // of in_odometry, the poses that it was seen from taken as exact
+  std::vector<PlacedSighting> seen;  // by key frames: the anchor first, then the newest
+  std::int64_t last_key_frame = 0;   // the newest that saw it
+  int num_found = 0;                 // frames that showed it
+  int num_missed = 0;                // frames that should have shown it, but did not
 };
 
 /// A landmark found in the current frame.
 struct Sighting {
   std::int64_t landmark = 0;
   StereoPixel pixel;
+  double view_change =
+      0;  // Frobenius norm: its surface's picture now against that in the anchor, turned upright
 };
 
 /// A new landmark at a corner of a key frame.

@@ -39,10 +39,22 @@ void LocalMap::add_key_frame(const RectifiedFrame& frame, const DisparityImage& 
                      .left = frame.left,
                      .features = std::move(features),
                      .sightings = std::move(sightings)};
-  for (const Sighting& s : key_frame.sightings) landmarks_.at(s.landmark).last_key_frame = key_frame.id;
+  for (const Sighting& s : key_frame.sightings) add_sighting(s, key_frame);
   add_landmarks(frame, disparity, key_frame);
   key_frames_.push_back(std::move(key_frame));
   if (static_cast<int>(key_frames_.size()) > max_key_frames_) forget_oldest();
+}
+
+void LocalMap::add_sighting(const Sighting& sighting, const KeyFrame& key_frame) {
+  Landmark& landmark = landmarks_.at(sighting.landmark);
+  landmark.last_key_frame = key_frame.id;
+  landmark.seen.push_back({key_frame.odometry_from_camera.inverse(), sighting.pixel, sighting.view_change});
+  if (static_cast<int>(landmark.seen.size()) > max_key_frames_ + 1)
+    landmark.seen.erase(landmark.seen.begin() + 1);
+  const auto placed = refine_point(camera_, landmark.seen, landmark.in_odometry, disparity_sigma_px_);
+  if (!placed) return;
+  landmark.in_odometry = placed->in_odometry;
+  landmark.covariance = placed->covariance;
 }
 
 void LocalMap::add_landmarks(const RectifiedFrame& frame, const DisparityImage& disparity,

@@ -25,7 +25,8 @@ class LocalMap {
         max_landmarks_(max_landmarks),
         disparity_sigma_px_(disparity_sigma_px) {}
 
-  /// Takes a frame in. `sightings`: the landmarks that it sees; new ones are made at its other corners.
+  /// Takes a frame in. `sightings`: the landmarks that it sees, which are placed anew with what it says of
+  /// them; new ones are made at its other corners.
   void add_key_frame(const RectifiedFrame& frame, const DisparityImage& disparity, FrameFeatures features,
                      const SE3& odometry_from_camera, std::vector<Sighting> sightings);
 
@@ -45,6 +46,7 @@ class LocalMap {
 
  private:
   void add_landmarks(const RectifiedFrame& frame, const DisparityImage& disparity, KeyFrame& key_frame);
+  void add_sighting(const Sighting& sighting, const KeyFrame& key_frame);
   void forget_oldest();
 
   StereoCamera camera_;

@@ -37,7 +37,8 @@ std::optional<Residual> residual_of(const StereoCamera& camera, const MotionPoin
   const Eigen::Matrix3d J_p = project_jacobian(camera, p);
   const Eigen::Matrix3d J_key = J_p * pose.linear();
   Eigen::Matrix3d S = J_key * point.covariance * J_key.transpose();
-  const double xy = options.image_sigma_px * options.image_sigma_px;
+  const double warped = options.view_change_sigma_px * point.view_change;
+  const double xy = options.image_sigma_px * options.image_sigma_px + warped * warped;
   S.diagonal() += Eigen::Vector3d(xy, xy, options.disparity_sigma_px * options.disparity_sigma_px);
   Residual r;
   r.error = point.current - project(camera, p);
@@ -47,13 +48,15 @@ std::optional<Residual> residual_of(const StereoCamera& camera, const MotionPoin
   return r;
 }
 
-/// Huber's weight: 1 up to k standard deviations, then falling as 1/distance.
-double robust_weight(double squared_sigmas, double k) {
-  return squared_sigmas <= k * k ? 1 : k / std::sqrt(squared_sigmas);
-}
+/// What a residual of so many standard deviations costs, and the derivatives by its square.
+struct Loss {
+  double cost = 0, weight = 1, weight_slope = 0;
+};
 
-double robust_cost(double squared_sigmas, double k) {
-  return squared_sigmas <= k * k ? squared_sigmas : 2 * k * std::sqrt(squared_sigmas) - k * k;
+/// Cauchy: logarithmic far beyond k standard deviations.
+Loss cauchy(double squared_sigmas, double k) {
+  const double growth = 1 + squared_sigmas / (k * k);
+  return {k * k * std::log(growth), 1 / growth, -1 / (k * k * growth * growth)};
 }
 
 /// Gauss-Newton's normal equations at one pose.
@@ -61,6 +64,13 @@ struct NormalEquations {
   Covariance6 H = Covariance6::Zero();
   Vector6 b = Vector6::Zero();
   double cost = 0;
+};
+
+/// What a covariance is made of.
+struct Spread {
+  Covariance6 information = Covariance6::Zero();  // as if every used point had full weight
+  double squared_pull = 0;                        // sum of |weight residual|^2
+  double stiffness = 0;  // sum of the traces of the weighted residuals' derivatives by the residuals
   int num_points = 0;
 };
 
@@ -78,14 +88,27 @@ class Problem {
         n.cost += 1e6;  // behind the camera: as bad as can be
         continue;
       }
-      const double weight = robust_weight(r->squared_sigmas, options_.robust_sigmas);
-      const Eigen::Matrix<double, 6, 3> JtW = weight * r->jacobian.transpose() * r->information;
+      const Loss loss = loss_of(*r);
+      const Eigen::Matrix<double, 6, 3> JtW = loss.weight * r->jacobian.transpose() * r->information;
       n.H += JtW * r->jacobian;
       n.b += JtW * r->error;
-      n.cost += robust_cost(r->squared_sigmas, options_.robust_sigmas);
-      ++n.num_points;
+      n.cost += loss.cost;
     }
     return n;
+  }
+
+  [[nodiscard]] Spread spread(const SE3& pose) const {
+    Spread s;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const auto r = used_[i] ? residual_of(camera_, points_[i], pose, options_) : std::nullopt;
+      if (!r) continue;
+      const Loss loss = loss_of(*r);
+      s.information += r->jacobian.transpose() * r->information * r->jacobian;
+      s.squared_pull += loss.weight * loss.weight * r->squared_sigmas;
+      s.stiffness += 3 * loss.weight + 2 * loss.weight_slope * r->squared_sigmas;
+      ++s.num_points;
+    }
+    return s;
   }
 
   /// Levenberg-Marquardt; the pose it ends at.
@@ -143,6 +166,10 @@ class Problem {
   [[nodiscard]] const std::vector<bool>& used() const { return used_; }
 
  private:
+  [[nodiscard]] Loss loss_of(const Residual& r) const {
+    return cauchy(r.squared_sigmas, options_.robust_sigmas);
+  }
+
   /// The largest share that a point has in the information about a direction w of the motion,
   ///   max_w  w'H_i w / w'H w = largest eigenvalue of  A J H^-1 J' A',  A'A = the point's information;
   /// 0 where that cannot be above a half because the eigenvalues' sum is not.
@@ -150,8 +177,7 @@ class Problem {
                                            const Covariance6& covariance) const {
     const auto r = residual_of(camera_, point, pose, options_);
     if (!r) return 0;
-    const Eigen::Matrix3d information =
-        robust_weight(r->squared_sigmas, options_.robust_sigmas) * r->information;
+    const Eigen::Matrix3d information = loss_of(*r).weight * r->information;
     const Eigen::Matrix3d prediction = r->jacobian * covariance * r->jacobian.transpose();
     if (!((information * prediction).trace() > kMajority)) return 0;
     const Eigen::Matrix3d A = information.llt().matrixU();
@@ -166,12 +192,16 @@ class Problem {
   std::vector<bool> used_;
 };
 
-/// Inverse of the information, enlarged if the residuals are larger than promised. Nothing if it is singular.
-std::optional<Covariance6> covariance_of(const NormalEquations& n) {
-  const Eigen::LDLT<Covariance6> ldlt(n.H);
+/// Inverse of the information, enlarged for the points' lower weights and if the residuals are larger than
+/// promised: an M-estimator's variance is E|psi|^2 / E[psi']^2 times that of least squares (Huber 1981).
+/// Nothing if it is singular.
+std::optional<Covariance6> covariance_of(const Spread& s) {
+  const Eigen::LDLT<Covariance6> ldlt(s.information);
   if (ldlt.info() != Eigen::Success || ldlt.vectorD().minCoeff() < 1e-6) return std::nullopt;
-  const double freedom = std::max(3.0 * n.num_points - 6, 1.0);
-  return Covariance6(ldlt.solve(Covariance6::Identity()) * std::max(1.0, n.cost / freedom));
+  const double num_residuals = 3.0 * s.num_points, freedom = std::max(num_residuals - 6, 1.0);
+  const double stiffness = s.stiffness / num_residuals;
+  const double enlarged = s.squared_pull / freedom / (stiffness * stiffness);
+  return Covariance6(ldlt.solve(Covariance6::Identity()) * std::max(1.0, enlarged));
 }
 
 void leave_out_decisive(Problem& problem, Motion& motion) {
@@ -234,7 +264,7 @@ std::optional<Motion> refine_motion(const StereoCamera& camera, const std::vecto
   motion.num_inliers = problem.keep_inliers(motion.current_from_key);
   leave_out_decisive(problem, motion);
   motion.inlier = problem.used();
-  const auto covariance = covariance_of(problem.linearise(motion.current_from_key));
+  const auto covariance = covariance_of(problem.spread(motion.current_from_key));
   if (!covariance) return std::nullopt;
   motion.covariance = *covariance;
   return motion;

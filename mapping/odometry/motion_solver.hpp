@@ -18,13 +18,15 @@ struct MotionPoint {
   Eigen::Vector3d in_key;      // metres
   Eigen::Matrix3d covariance;  // of in_key, metres^2
   StereoPixel current;
+  double view_change = 0;  // of its surface, see Sighting
 };
 
 struct MotionOptions {
   double image_sigma_px = 0.15;  // of x and y of an aligned corner
   double disparity_sigma_px = 0.15;
-  double robust_sigmas = 2.0;  // residuals beyond this many standard deviations lose weight
-  double inlier_sigmas = 4.0;  // and beyond this many are outliers
+  double view_change_sigma_px = 0.2;  // added to it where a surface is seen quite differently (change 1)
+  double robust_sigmas = 1.0;         // a residual of that many standard deviations has half the weight
+  double inlier_sigmas = 4.0;         // beyond that many it is an outlier
   int max_iterations = 12;
 };
 
@@ -44,6 +46,9 @@ struct Motion {
 /// Levenberg-Marquardt from `start` on the stereo pixels of the current frame. The errors of the key frame's
 /// pixels enter through the points' covariances, so all four images count, as if every point were estimated
 /// along (to first order). Nothing if the points do not determine six degrees of freedom.
+///
+/// Most errors are a few hundredths of a pixel, a few are many times that (edges of depth, wrong slants), all
+/// within the bounds of an inlier: so the loss is Cauchy's, which lets the many decide.
 ///
 /// A point that outweighs all others together in some direction of the motion fits wherever it was found, and
 /// nothing would contradict it if it were a wrong one. It is left out and counts as an outlier.

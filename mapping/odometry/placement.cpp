@@ -117,7 +117,7 @@ class Placing {
     std::vector<MotionPoint> points;
     for (const Sighting& s : found.sightings) {
       const Landmark& landmark = map_.landmark(s.landmark);
-      points.push_back({landmark.in_odometry, landmark.covariance, s.pixel});
+      points.push_back({landmark.in_odometry, landmark.covariance, s.pixel, s.view_change});
     }
     auto motion = refine_motion(camera_, points, odometry_from_camera.inverse(), options_.motion);
     if (!motion) return std::nullopt;
