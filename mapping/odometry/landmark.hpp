@@ -33,8 +33,7 @@ struct Landmark {
 struct Sighting {
   std::int64_t landmark = 0;
   StereoPixel pixel;
-  double view_change =
-      0;  // Frobenius norm: its surface's picture now against that in the anchor, turned upright
+  double view_change = 0;  // of its surface's picture against the anchor's, turned alike: Frobenius norm
 };
 
 /// A new landmark at a corner of a key frame.
