@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/flog/grazing.hpp"
+
 namespace flogmap::experiments {
 
 BayesGrid::BayesGrid(const FlogOptions& flog, const StereoCamera& camera, const BayesOptions& options)
@@ -15,7 +17,8 @@ std::vector<BayesGrid::BayesCell>& BayesGrid::tile_at(TileIndex index) {
 }
 
 void BayesGrid::add(const View& view) {
-  const Image<float>& d = view.disparity.px;
+  const DisparityImage seen = without_grazing(model_.camera, flog_.grid, view, flog_.max_incidence_deg);
+  const Image<float>& d = seen.px;
   for (int y = 0; y < d.height; y += flog_.row_step) {
     for (int x = 0; x < d.width; x += flog_.column_step) {
       const auto measured = measured_ray(model_, view.world_from_camera, x, y, d.at(x, y));
