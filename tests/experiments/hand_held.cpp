@@ -15,8 +15,7 @@ constexpr const char* kQuestion =
     "mirroring "
     "table. The paper: \"obstacles and free space identified; object borders fuzzier than in experiment "
     "1\". What could be seen of house-dev is taken from its measured depths, as the exact ones are not "
-    "known. Every angle: pixels that see a surface at more than 76 degrees from its normal are mapped, too "
-    "(--max-incidence 90).";
+    "known. Every angle: pixels that see a surface much from the side are mapped, too (--max-incidence 90).";
 
 struct Walked {
   const char *passage, *name;
