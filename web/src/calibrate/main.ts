@@ -58,7 +58,8 @@ async function look(): Promise<void> {
     if (!response.ok) return setText(advice, 'Nothing is being calibrated here.');
     const text = await response.text();
     const sitting = JSON.parse(text) as Sitting;
-    if (sitting.frame !== shownFrame) await Promise.all(views.map((view) => view.fetch()));
+    const thereAreNew = sitting.frame > 0 && sitting.frame !== shownFrame; // before the first pair there is no picture
+    if (thereAreNew) await Promise.all(views.map((view) => view.fetch()));
     if (text !== shown) show(sitting);
     shownFrame = sitting.frame;
     shown = text;
